@@ -6,6 +6,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
 use ndda::rockfall::{Model, map};
+use ndda_io::mesh::terrain_grid::TerrainGrid;
 use ndda_io::read;
 
 const COLUMNS: usize = 9;
@@ -218,7 +219,7 @@ fn the_map_of_reach_is_in_the_coordinates_of_the_terrains_file() {
     // Reach is counted between heights, the first of which is half a cell from the corner.
     let path = folder.path().join("reach.asc");
     fs::write(&path, &written).unwrap();
-    let read = ndda_io::mesh::terrain_grid::read(&path).unwrap();
+    let read = TerrainGrid::read(&path, None).unwrap();
     assert_eq!(read.origin_m, [500_010.0, 200_010.0]);
     assert_eq!((read.heights_m.len(), read.heights_m[0].len()), (ROWS - 1, COLUMNS - 1));
     assert_eq!(read.heights_m[0][COLUMNS - 2], None, "{written}");

@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use ndda_io::study::LoadedStudy;
+
 #[path = "verification/evidence.rs"]
 #[allow(dead_code)] // limits are all that is asked for here
 mod evidence;
@@ -10,7 +12,7 @@ use evidence::Answer::AtMost;
 use evidence::row;
 use ndda::{Model, Run, rockfall};
 use ndda_io::summary::Status;
-use ndda_io::{OutputFolder, read, study};
+use ndda_io::{OutputFolder, read};
 use serde_json::Value;
 
 /// Row of the manual, scene, largest `error_end` and largest `error_max` that its header allows: each bound is a promise of a scene.
@@ -99,7 +101,7 @@ fn scenes_of_extreme_cases_and_failures_load_and_say_what_is_expected() {
         let name = path.display();
         let text = std::fs::read_to_string(&path).unwrap();
         if text.contains("\n    scene: \"") {
-            study::load(&path).unwrap_or_else(|errors| panic!("{name}: {}", errors.render(false)));
+            LoadedStudy::load(&path).unwrap_or_else(|errors| panic!("{name}: {}", errors.render(false)));
         } else if text.contains("\n    rockfall: (") {
             let loaded =
                 read::load(&path, &[]).unwrap_or_else(|errors| panic!("{name}: {}", errors.render(false)));

@@ -21,17 +21,17 @@ fn resumed_runs_are_the_run() {
         for _ in 0..3 {
             let mut ready = build(&case.text).unwrap();
             if killed_at > 0 {
-                let (snapshot, _) = checkpoint::read::<Snapshot>(&folder, |_| Ok(())).expect("a checkpoint");
+                let (snapshot, _) = folder.read_checkpoint::<Snapshot>(|_| Ok(())).expect("a checkpoint");
                 ready.simulation.restore(snapshot).expect("of this scene");
             }
             killed_at += u64::from(random.whole(1, (steps / 4) as u32));
             if run_to(&mut ready.simulation, killed_at, steps, ROWS).is_some() {
                 return Found::Skipped("stops before the kill");
             }
-            checkpoint::write(&folder, &ready.simulation.snapshot()).expect("room on the disk");
+            folder.write_checkpoint(&ready.simulation.snapshot()).expect("room on the disk");
         }
         let mut last = build(&case.text).unwrap();
-        let (snapshot, _) = checkpoint::read::<Snapshot>(&folder, |_| Ok(())).expect("a checkpoint");
+        let (snapshot, _) = folder.read_checkpoint::<Snapshot>(|_| Ok(())).expect("a checkpoint");
         last.simulation.restore(snapshot).expect("of this scene");
         let also = run_to(&mut last.simulation, steps, steps, ROWS);
         let same = checkpoint::fingerprint(whole.simulation.state())

@@ -14,7 +14,7 @@ use evidence::{Answer, row};
 use ndda::certify::certificate::Certificate;
 use ndda::certify::extrapolate::Behaviour;
 use ndda::certify::quantities::{common_rows, rounding, values};
-use ndda_io::table::{self, Table};
+use ndda_io::table::Table;
 use serde_json::Value;
 
 /// A cube thrown in gravity; its closed form is exact at any step.
@@ -147,7 +147,7 @@ fn score(scene: &Scene) -> Score {
     let mut set = vec![step.as_str(), end.as_str()];
     set.extend(scene.set);
     let certificate = certified(folder.path(), scene.file, &set, &[]);
-    let history = |run: &str| -> Table { table::read(&folder.path().join(run).join("history.csv")).unwrap() };
+    let history = |run: &str| -> Table { Table::read(&folder.path().join(run).join("history.csv")).unwrap() };
     let fine = history("c/cases/step_4/run");
     let rows = format!("output.history_rows={}", history("c/cases/step_1/run").columns[0].len() - 1);
     let step = format!("time.step_s={:e}", scene.step_s / TRUTH);

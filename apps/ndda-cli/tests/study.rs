@@ -6,6 +6,7 @@ use std::process::{Command, Output};
 use std::time::SystemTime;
 
 use ndda::study::case;
+use ndda_io::study::LoadedStudy;
 use serde_json::Value;
 
 /// A tetrahedron thrown sideways in gravity: its closed form is exact at any step.
@@ -197,7 +198,7 @@ fn the_scenes_of_the_example_studies_are_right() {
     // Beside the paper's studies are their scenes and scripts, beside the others a folder of scenes.
     let is_figure = |path: &PathBuf| path.file_name().unwrap().to_string_lossy().starts_with("fig");
     for path in files("studies").filter(|path| path.is_file()).chain(files("paper").filter(is_figure)) {
-        let loaded = ndda_io::study::load(&path).unwrap_or_else(|errors| panic!("{errors}"));
+        let loaded = LoadedStudy::load(&path).unwrap_or_else(|errors| panic!("{errors}"));
         let cases = case::cases(&loaded).unwrap();
         let references = case::reference_cases(&loaded, &cases).unwrap();
         for case in cases.iter().chain(&references) {

@@ -1,12 +1,10 @@
 //! Ranks that are processes, by MPI.
 
-use std::sync::{Mutex, PoisonError};
-
 use mpi::Count;
 use mpi::datatype::PartitionMut;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::*;
-use ndda_ranks::{Communicator as Ranks, Gathered, RanksError, Topic};
+use ndda_ranks::{Communicator as Ranks, Gathered, RanksError, Topic, UntilEnded};
 
 /// Bits of the length in the word that announces a message; the topic is above them.
 const LENGTH_BITS: u32 = 56;
@@ -20,15 +18,14 @@ static NOTHING: [u8; 1] = [0];
 pub struct MpiRanks {
     rank: usize,
     size: usize,
-    /// Why nothing is exchanged any more.
-    ended: Mutex<Option<RanksError>>,
+    exchanges: UntilEnded<()>,
 }
 
 impl MpiRanks {
     /// All of them.
     pub fn new() -> Self {
         let world = SimpleCommunicator::world();
-        Self { rank: world.rank() as usize, size: world.size() as usize, ended: Mutex::new(None) }
+        Self { rank: world.rank() as usize, size: world.size() as usize, exchanges: UntilEnded::new(()) }
     }
 
     /// Ends all processes at once.
@@ -89,20 +86,14 @@ impl Ranks for MpiRanks {
     }
 
     fn exchange(&self, topic: Topic, own: &[u8], all: &mut Gathered) -> Result<(), RanksError> {
-        let mut ended = self.ended.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(error) = &*ended {
-            return Err(error.clone());
-        }
-        let topics = self.gather(topic, own, all);
-        all.judge(topic, &topics).inspect_err(|error| *ended = Some(error.clone()))
+        self.exchanges.exchange(|()| {
+            let topics = self.gather(topic, own, all);
+            all.judge(topic, &topics)
+        })
     }
 
     fn give_up(&self, why: &str) {
-        let mut ended = self.ended.lock().unwrap_or_else(PoisonError::into_inner);
-        if ended.is_none() {
-            let mut all = Gathered::default();
-            let topics = self.gather(Topic::GivenUp, why.as_bytes(), &mut all);
-            *ended = all.judge(Topic::GivenUp, &topics).err();
-        }
+        // The topic itself is what fails.
+        drop(self.exchange(Topic::GivenUp, why.as_bytes(), &mut Gathered::default()));
     }
 }

@@ -18,6 +18,7 @@ use ndda::study::{Study, make_folder};
 use ndda::sweep::{Ask, How, Sweep};
 use ndda::view3d::{self, BoltColour, Frames, Look, Resting, View, ViewError};
 use ndda::{Run, certify as certificates};
+use ndda_io::outside_files::OutsideFile;
 use ndda_io::study::Sampling;
 use ndda_io::{OutputFolder, atomic};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyOSError, PyRuntimeError, PyValueError};
@@ -141,7 +142,7 @@ fn _certify(
     let (own, text) = (PathBuf::from(&model.loaded.file), model.loaded.text.clone());
     let is_own = std::fs::read_to_string(&own).is_ok_and(|found| found == text);
     let file = if is_own { own } else { out.join(format!("{name}.ron")) };
-    if !is_own && !ndda_io::outside_files::of_scene(&model.loaded.scene, &scene.folder).is_empty() {
+    if !is_own && !OutsideFile::all_of(&model.loaded.scene, &scene.folder).is_empty() {
         let message = "the files that the scene names may not be found, since the scene was changed or made from a text: write scene.text to a file in their folder, and load that";
         return Err(value_error(message));
     }

@@ -5,9 +5,10 @@ use std::hint::black_box;
 use std::path::Path;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+use ndda_io::results::Table;
 use ndda_io::scene::{FieldFormat, Precision};
-use ndda_io::vtu::{self, Topology, Values};
-use ndda_io::{Frame, History, OutputFolder, checkpoint, mesh_file, read, table};
+use ndda_io::vtu::{Topology, Values};
+use ndda_io::{Frame, History, OutputFolder, checkpoint, mesh_file, read};
 use ndda_mesh::generate::{BoxPattern, box_block};
 use ndda_mesh::{BlockMesh, BlockSet, Vec3};
 use tempfile::TempDir;
@@ -64,7 +65,7 @@ fn frames(c: &mut Criterion) {
     group.sample_size(20);
     for format in [FieldFormat::Compressed, FieldFormat::Appended, FieldFormat::Base64] {
         let topology = Topology::new(&blocks, format).with_blocks(&blocks);
-        let encode = || vtu::encode(Path::new("frame.vtu"), &topology, &frame(&blocks)).expect("numbers");
+        let encode = || frame(&blocks).encode(Path::new("frame.vtu"), &topology).expect("numbers");
         group.bench_function(BenchmarkId::new("encode", format!("{format:?}")), |b| b.iter(encode));
     }
     group.finish();
@@ -81,7 +82,7 @@ fn histories(c: &mut Criterion) {
     };
     c.bench_function("history/write 1000 rows of 20", |b| b.iter(write));
     write();
-    c.bench_function("history/read 1000 rows of 20", |b| b.iter(|| table::read(&path).expect("the table")));
+    c.bench_function("history/read 1000 rows of 20", |b| b.iter(|| Table::read(&path).expect("the table")));
 }
 
 /// A value as long as the state of the cube: three vectors a node.
@@ -91,10 +92,10 @@ fn checkpoints(c: &mut Criterion) {
     let state: Vec<[f64; 3]> = cube().nodes.iter().flat_map(|x| [[x.x, x.y, x.z]; 3]).collect();
     let mut group = c.benchmark_group("checkpoint of 14 739 vectors");
     group.sample_size(10);
-    let write = || checkpoint::write(&output, &state).expect("room for a checkpoint");
+    let write = || output.write_checkpoint(&state).expect("room for a checkpoint");
     group.bench_function("write", |b| b.iter(write));
     write();
-    let read = || checkpoint::read::<Vec<[f64; 3]>>(&output, |_| Ok(())).expect("the one just written");
+    let read = || output.read_checkpoint::<Vec<[f64; 3]>>(|_| Ok(())).expect("the one just written");
     group.bench_function("read", |b| b.iter(read));
     group.bench_function("fingerprint", |b| b.iter(|| checkpoint::fingerprint(&state)));
     group.finish();

@@ -39,13 +39,13 @@ mod write_error;
 #[cfg(feature = "tetgen")]
 pub use mesh::tetgen_fill;
 pub use mesh::{self as mesh_file, gmsh_program, msh, surface_file, vtk_file};
-pub use results::{checkpoint, folder, summary, table, tables, vtu};
+pub use results::{checkpoint, summary, table, vtu};
 #[cfg(feature = "schema")]
 pub use scene::schema;
 pub use scene::{code, diagnostic, joint_table, locate, outside_files, read, record, study, units};
 
-pub use folder::OutputFolder;
-pub use results::bolt_lines::{BoltLine, BoltSeries, bolts_name};
+pub use results::bolt_lines::{BoltLine, BoltSeries};
+pub use results::folder::OutputFolder;
 pub use results::history::History;
 pub use results::pvd::FieldSeries;
 pub use summary::Summary;

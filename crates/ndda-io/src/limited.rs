@@ -6,9 +6,9 @@ use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
 /// Most bytes of a scene or table: 256 MiB.
-pub const MOST_BYTES: u64 = 1 << 28;
+pub(crate) const MOST_BYTES: u64 = 1 << 28;
 
-/// The bytes of a regular file of at most [`MOST_BYTES`].
+/// The bytes of a regular file of at most 256 MiB.
 ///
 /// # Errors
 /// It cannot be read, is a folder, a pipe or a device, or is larger.
@@ -38,7 +38,7 @@ fn no_file(error: io::Error) -> io::Error {
 /// All of standard input. It can be read once only, and is kept for those who ask again.
 ///
 /// # Errors
-/// It cannot be read, or is larger than [`MOST_BYTES`].
+/// It cannot be read, or is larger than 256 MiB.
 pub(crate) fn standard_input() -> io::Result<Vec<u8>> {
     static KEPT: Mutex<Option<Vec<u8>>> = Mutex::new(None);
     let mut kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);

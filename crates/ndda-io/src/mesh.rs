@@ -77,7 +77,7 @@ pub fn write(path: &Path, bodies: &[(String, BlockMesh)]) -> Result<(), WriteErr
         "node" | "ele" | "face" => tetgen::write(path, bodies),
         "inp" => abaqus::write(path, bodies),
         "vtu" => vtk_file::write(path, bodies),
-        "vtk" => vtk_file::write_legacy(path, bodies),
+        "vtk" => vtk_file::write_legacy::write(path, bodies),
         found => {
             let reason = format!(
                 "`.{found}` is not a format that is written here: give .msh, .node, .ele, .vtu, .vtk or .inp"

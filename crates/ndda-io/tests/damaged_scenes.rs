@@ -6,7 +6,7 @@ use std::fs;
 use std::ops::Range;
 use std::sync::LazyLock;
 
-use ndda_io::locate;
+use ndda_io::locate::Node;
 use ndda_io::read::load_text;
 use ndda_io::units::DIMENSIONS;
 use proptest::prelude::*;
@@ -22,7 +22,7 @@ static SCENES: LazyLock<Vec<(String, Vec<Range<usize>>)>> = LazyLock::new(|| {
     let read = |file| {
         let text = fs::read_to_string(file).unwrap();
         let mut places = Vec::new();
-        locate::tree(&text).for_each_leaf(&mut |leaf| places.push(leaf.span.clone()));
+        Node::of(&text).for_each_leaf(&mut |leaf| places.push(leaf.span.clone()));
         (text, places)
     };
     files.iter().map(read).collect()

@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::Path;
 
-use ndda_io::gmsh_program::{Finer, Sizes, VARIABLE, mesh};
+use ndda_io::gmsh_program::{Finer, Sizes, mesh};
 use ndda_io::mesh_file::read;
 use ndda_mesh::stats::stats;
 use ndda_mesh::validate;
@@ -56,7 +56,7 @@ fn a_missing_gmsh_is_named_with_what_to_install() {
     let path = folder.path().join("a.step");
     fs::write(&path, "").unwrap();
     let error = mesh(&path, &Sizes::default(), Some(Path::new("/no/such/gmsh"))).unwrap_err().to_string();
-    assert!(error.contains("install Gmsh") && error.contains(VARIABLE), "{error}");
+    assert!(error.contains("install Gmsh") && error.contains("NDDA_GMSH"), "{error}");
     assert!(
         mesh(&folder.path().join("b.step"), &Sizes::default(), None)
             .unwrap_err()

@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::fs;
 
 use ndda_io::mesh_file::{FileProblem, MeshFileError};
-use ndda_io::surface_file::{Surface, read, write_blocks};
+use ndda_io::surface_file::{Surface, write_blocks};
 use ndda_io::vtk_file::write_polyhedra;
 use ndda_mesh::Vec3;
 use ndda_mesh::cut::{Blocks, CutOptions, Domain, Polyhedron, cut_blocks};
@@ -51,7 +51,7 @@ fn from(ending: &str, content: impl AsRef<[u8]>, tolerance: f64) -> Result<Surfa
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a").with_extension(ending);
     fs::write(&path, content).unwrap();
-    read(&path, tolerance)
+    Surface::read(&path, tolerance)
 }
 
 fn volume_m3(surface: &Surface) -> f64 {
@@ -124,7 +124,7 @@ fn blocks_go_out_as_obj_that_is_a_closed_surface_again_and_as_polyhedra() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.obj");
     write_blocks(&path, &one_block()).unwrap();
-    let surface = read(&path, 0.0).unwrap();
+    let surface = Surface::read(&path, 0.0).unwrap();
     assert!((volume_m3(&surface) - 1.0).abs() < 1e-14);
     assert_eq!(surface.faces[0].name, "x_min");
     let path = folder.path().join("a.vtu");

@@ -16,6 +16,11 @@ pub fn triangle_area_vector(corners: &[Vec3; 3]) -> Vec3 {
     (b - a).cross(&(c - a)) * 0.5
 }
 
+/// How far points reach below a plane through `point` with an outward unit normal [m].
+pub fn reach_below<'a>(normal: &Vec3, point: &Vec3, points: impl IntoIterator<Item = &'a Vec3>) -> f64 {
+    points.into_iter().map(|x| normal.dot(&(point - x))).fold(0.0, f64::max)
+}
+
 /// Distance of a point to a triangle [m] (Ericson 2005, §5.1.5).
 pub fn distance_to_triangle(p: &Vec3, [a, b, c]: &[Vec3; 3]) -> f64 {
     let normal = (b - a).cross(&(c - a));

@@ -24,8 +24,10 @@ mod communicator;
 mod divide;
 mod packing;
 mod threads;
+mod until_ended;
 
 pub use communicator::{Alone, Communicator, Gathered, RanksError, Topic, agree};
 pub use divide::{divide, share};
 pub use packing::{Packed, Packer, Unpacker};
 pub use threads::Threads;
+pub use until_ended::UntilEnded;

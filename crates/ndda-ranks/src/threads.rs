@@ -1,9 +1,10 @@
 //! Ranks that are threads of one process, for tests: they have no memory in common but the channels between them.
 
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
-use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::communicator::{Communicator, Gathered, RanksError, Topic};
+use crate::until_ended::UntilEnded;
 
 type Message = (Topic, Arc<Vec<u8>>);
 
@@ -15,7 +16,7 @@ type Message = (Topic, Arc<Vec<u8>>);
 pub struct Threads {
     rank: usize,
     size: usize,
-    lines: Mutex<Lines>,
+    lines: UntilEnded<Lines>,
 }
 
 /// To and from every rank.
@@ -23,8 +24,6 @@ pub struct Threads {
 struct Lines {
     to: Vec<Sender<Message>>,
     from: Vec<Receiver<Message>>,
-    /// Why nothing is exchanged any more.
-    ended: Option<RanksError>,
 }
 
 impl Threads {
@@ -39,7 +38,7 @@ impl Threads {
                 from.push(receiver);
             }
         }
-        let lines = to.into_iter().zip(from).map(|(to, from)| Mutex::new(Lines { to, from, ended: None }));
+        let lines = to.into_iter().zip(from).map(|(to, from)| UntilEnded::new(Lines { to, from }));
         (0..).zip(lines).map(|(rank, lines)| Self { rank, size, lines }).collect()
     }
 }
@@ -78,20 +77,18 @@ impl Communicator for Threads {
     }
 
     fn exchange(&self, topic: Topic, own: &[u8], all: &mut Gathered) -> Result<(), RanksError> {
-        let mut lines = self.lines.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(error) = &lines.ended {
-            return Err(error.clone());
-        }
-        lines.send(topic, own);
-        lines.take(topic, all).inspect_err(|error| lines.ended = Some(error.clone()))
+        self.lines.exchange(|lines| {
+            lines.send(topic, own);
+            lines.take(topic, all)
+        })
     }
 
     fn give_up(&self, why: &str) {
-        let mut lines = self.lines.lock().unwrap_or_else(PoisonError::into_inner);
-        if lines.ended.is_none() {
+        let told = self.lines.exchange(|lines| {
             lines.send(Topic::GivenUp, why.as_bytes());
-            lines.ended = Some(RanksError::Stopped { rank: self.rank, why: why.into() });
-        }
+            Err(RanksError::Stopped { rank: self.rank, why: why.into() })
+        });
+        drop(told);
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use ndda_io::locate;
+use ndda_io::locate::Node;
 use ndda_io::read::suggest;
 
 /// Names and texts.
@@ -45,7 +45,7 @@ pub fn find(name: &str) -> Option<&'static str> {
 pub fn list() -> String {
     let widest = EXAMPLES.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
     EXAMPLES.iter().fold(String::new(), |mut out, (name, text)| {
-        let title = locate::tree(text).find(text, "title").map_or("", |node| &text[node.span.clone()]);
+        let title = Node::of(text).find(text, "title").map_or("", |node| &text[node.span.clone()]);
         writeln!(out, "{name:widest$}  {}", title.trim_matches('"')).expect("a string takes all");
         out
     })

@@ -7,8 +7,8 @@ mod text;
 use std::collections::BTreeMap;
 
 use ndda_contact::Part;
+use ndda_io::OutputFolder;
 use ndda_io::scene::{Scene, TableFormat};
-use ndda_io::{OutputFolder, folder};
 use ndda_solver::{FactorPlan, KindPlan, Plan, Simulation};
 use serde::Serialize;
 
@@ -187,9 +187,10 @@ fn outputs(scene: &Scene, monitors: usize) -> [Part; 7] {
 }
 
 fn files(scene: &Scene) -> Vec<String> {
-    let mut files: Vec<String> = [folder::SUMMARY, folder::CHECKPOINT, folder::LOG].map(Into::into).to_vec();
-    let tables = [(folder::HISTORY, true), (folder::CONTACTS, scene.output.contacts)];
-    for ((csv, written), parquet) in tables.into_iter().zip(folder::PARQUET) {
+    let mut files: Vec<String> =
+        [OutputFolder::SUMMARY, OutputFolder::CHECKPOINT, OutputFolder::LOG].map(Into::into).to_vec();
+    let tables = [(OutputFolder::HISTORY, true), (OutputFolder::CONTACTS, scene.output.contacts)];
+    for ((csv, written), parquet) in tables.into_iter().zip(OutputFolder::PARQUET) {
         if written && scene.output.history != TableFormat::Parquet {
             files.push(csv.into());
         }
@@ -197,14 +198,14 @@ fn files(scene: &Scene) -> Vec<String> {
             files.push(parquet.into());
         }
     }
-    files.extend(scene.output.blocks.then(|| folder::BLOCKS.into()));
-    files.extend((!scene.bolts.is_empty()).then(|| folder::BOLTS.into()));
+    files.extend(scene.output.blocks.then(|| OutputFolder::BLOCKS.into()));
+    files.extend((!scene.bolts.is_empty()).then(|| OutputFolder::BOLTS.into()));
     files.extend(scene.stages.iter().map(|stage| OutputFolder::stage_checkpoint_name(&stage.name)));
     if scene.output.frames > 0 {
-        let last = folder::frame_name(cost::frames(scene) as usize - 1);
-        let fields = folder::FIELDS_FOLDER;
-        files.push(folder::FIELDS_INDEX.into());
-        files.push(format!("{fields}/{} to {fields}/{last}", folder::frame_name(0)));
+        let last = OutputFolder::frame_name(cost::frames(scene) as usize - 1);
+        let fields = OutputFolder::FIELDS_FOLDER;
+        files.push(OutputFolder::FIELDS_INDEX.into());
+        files.push(format!("{fields}/{} to {fields}/{last}", OutputFolder::frame_name(0)));
     }
     files
 }

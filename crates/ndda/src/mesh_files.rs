@@ -3,9 +3,8 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use ndda_io::folder::MESH_REPORT;
 use ndda_io::scene::FieldFormat;
-use ndda_io::vtu::{self, Frame, Topology};
+use ndda_io::vtu::{Frame, Topology};
 use ndda_io::{OutputFolder, WriteError};
 use ndda_mesh::BlockSet;
 
@@ -41,8 +40,8 @@ impl MeshFiles<'_> {
         let path = folder.join("blocks.vtu");
         let topology = Topology::new(blocks, FieldFormat::default()).with_blocks(blocks);
         let frame = Frame::new(blocks, &blocks.rest_position);
-        ndda_io::atomic::write(&path, &vtu::encode(&path, &topology, &frame)?)?;
-        ndda_io::atomic::write(&folder.join(MESH_REPORT), self.measured.json().as_bytes())?;
+        ndda_io::atomic::write(&path, &frame.encode(&path, &topology)?)?;
+        ndda_io::atomic::write(&folder.join(OutputFolder::MESH_REPORT), self.measured.json().as_bytes())?;
         #[cfg(feature = "plots")]
         {
             use crate::{mesh_picture, picture, view3d};

@@ -20,18 +20,29 @@ pub fn four_figures(value: f64) -> String {
     }
 }
 
-/// A length in the unit that people would give it in: `3.16 m`, `11.9 mm`, `0.15 µm`.
+/// Shorter lengths [m] have no figure left in micrometres, and are most often rounding.
+pub const SHORTEST_M: f64 = 1e-9;
+
+/// A length in a unit that suits it: `3.16 m`, `11.9 mm`, `0.150 µm`.
 pub fn length(metres: f64) -> String {
-    let (value, unit) = match metres.abs() {
-        0.0 => return "0 m".into(),
-        size if size >= 1.0 => (metres, "m"),
-        size if size >= 1e-4 => (1e3 * metres, "mm"),
-        _ => (1e6 * metres, "µm"),
-    };
-    match value.abs() {
-        size if size < 1e-2 => "less than 0.01 µm".into(),
-        size => format!("{value:.*} {unit}", (2 - size.log10().floor() as i32).clamp(0, 2) as usize),
+    match metres.abs() {
+        0.0 => "0 m".into(),
+        size if size >= 1.0 => format!("{} m", three_figures(metres)),
+        size if size >= 1e-3 => format!("{} mm", three_figures(1e3 * metres)),
+        size if size >= SHORTEST_M => format!("{} µm", three_figures(1e6 * metres)),
+        _ => format!("{metres:.1e} m"),
     }
+}
+
+/// A number in three figures, or all those before the point, with at most three after it.
+fn three_figures(value: f64) -> String {
+    let decimals = match value.abs() {
+        v if v >= 100.0 => 0,
+        v if v >= 10.0 => 1,
+        v if v >= 1.0 => 2,
+        _ => 3,
+    };
+    format!("{value:.decimals$}")
 }
 
 /// Trend, clockwise from the north (y), and plunge below the horizontal, negative upward, of a direction: `110.5°/37.9°`.
@@ -99,15 +110,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lengths_have_three_digits_and_the_unit_that_suits_them() {
+    fn lengths_have_three_figures_and_the_unit_that_suits_them() {
         for (metres, text) in [
             (3.158, "3.16 m"),
             (123.4, "123 m"),
             (0.01188, "11.9 mm"),
             (0.56, "560 mm"),
-            (1.4e-4, "0.14 mm"),
+            (1.4e-4, "140 µm"),
             (8.3e-6, "8.30 µm"),
-            (5.8e-12, "less than 0.01 µm"),
+            (5.8e-12, "5.8e-12 m"),
             (0.0, "0 m"),
         ] {
             assert_eq!(length(metres), text);

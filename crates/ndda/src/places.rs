@@ -2,8 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use ndda_io::folder::{CHECKPOINT, HISTORY, LOG, SUMMARY};
-use ndda_io::read;
+use ndda_io::{OutputFolder, read};
 
 /// File of a factor of safety, folder beside it of the run that shows how blocks fail, and file of a rockfall.
 pub(crate) const SAFETY: &str = "safety.json";
@@ -25,7 +24,10 @@ pub fn folder_for(asked: Option<&Path>, file: &Path, suffix: &str) -> PathBuf {
 
 /// What a folder without a run holds instead, and what shows it or goes on with it.
 pub fn instead(folder: &Path) -> Option<String> {
-    if [SUMMARY, HISTORY, CHECKPOINT, LOG].iter().any(|file| folder.join(file).is_file()) {
+    if [OutputFolder::SUMMARY, OutputFolder::HISTORY, OutputFolder::CHECKPOINT, OutputFolder::LOG]
+        .iter()
+        .any(|file| folder.join(file).is_file())
+    {
         return None;
     }
     let mechanism = folder.join(MECHANISM);
@@ -36,7 +38,7 @@ pub fn instead(folder: &Path) -> Option<String> {
             map.display()
         ));
     }
-    let shows = match mechanism.join(SUMMARY).is_file() {
+    let shows = match mechanism.join(OutputFolder::SUMMARY).is_file() {
         true => format!("`ndda view {}` shows how blocks fail, and ", mechanism.display()),
         false => String::new(),
     };
@@ -70,12 +72,12 @@ mod tests {
                 .ends_with("it holds a factor of safety: `ndda safety SCENE` goes on with its trials")
         );
         std::fs::create_dir(path.join(MECHANISM)).unwrap();
-        std::fs::write(path.join(MECHANISM).join(SUMMARY), "{}").unwrap();
+        std::fs::write(path.join(MECHANISM).join(OutputFolder::SUMMARY), "{}").unwrap();
         let shows = format!("`ndda view {}`", path.join(MECHANISM).display());
         assert!(instead(path).unwrap().contains(&shows));
         std::fs::write(path.join(ROCKFALL), "{}").unwrap();
         assert!(instead(path).unwrap().contains("map.png"));
-        std::fs::write(path.join(SUMMARY), "{}").unwrap();
+        std::fs::write(path.join(OutputFolder::SUMMARY), "{}").unwrap();
         assert_eq!(instead(path), None, "there is a run");
     }
 }

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use ndda_io::table::{self, Table, TableError};
-use ndda_io::{WriteError, folder, results};
+use ndda_io::table::{Table, TableError};
+use ndda_io::{OutputFolder, WriteError};
 use plotters::coord::ranged1d::{AsRangedCoord, Ranged, ValueFormatter};
 use plotters::prelude::*;
 use serde::Serialize;
@@ -86,7 +86,7 @@ pub struct Columns {
 pub fn columns(inputs: &[PathBuf]) -> Result<Vec<Columns>, PlotError> {
     let columns = |input: &PathBuf| -> Result<Columns, PlotError> {
         let file = history(input);
-        Ok(Columns { columns: table::read(&file)?.names, file })
+        Ok(Columns { columns: Table::read(&file)?.names, file })
     };
     inputs.iter().map(columns).collect()
 }
@@ -97,7 +97,7 @@ pub fn columns(inputs: &[PathBuf]) -> Result<Vec<Columns>, PlotError> {
 /// [`PlotError`].
 pub fn plot(plot: &Plot, out: &Path) -> Result<(), PlotError> {
     let files: Vec<PathBuf> = plot.inputs.iter().map(|input| history(input)).collect();
-    let tables = files.iter().map(|file| table::read(file)).collect::<Result<Vec<_>, _>>()?;
+    let tables = files.iter().map(|file| Table::read(file)).collect::<Result<Vec<_>, _>>()?;
     let mut lines = Vec::new();
     let (mut names, mut against) = (Vec::new(), String::new());
     for ((file, table), input) in files.iter().zip(&tables).zip(&plot.inputs) {
@@ -127,7 +127,7 @@ fn history(input: &Path) -> PathBuf {
     if !input.is_dir() {
         return input.to_path_buf();
     }
-    results::history_file(input).unwrap_or_else(|| input.join(folder::HISTORY))
+    OutputFolder::history_in(input).unwrap_or_else(|| input.join(OutputFolder::HISTORY))
 }
 
 /// Name of a run in the legend.

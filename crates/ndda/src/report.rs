@@ -16,7 +16,7 @@ mod sections;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use ndda_io::folder::SUMMARY;
+use ndda_io::OutputFolder;
 use ndda_io::results::ListedFrame;
 use serde::Serialize;
 
@@ -56,7 +56,7 @@ impl std::fmt::Display for Written {
 /// Whether there is a report that is no older than the summary and the certificate.
 pub fn is_current(folder: &Path, report: &Path) -> bool {
     let changed = |path: &Path| fs::metadata(path).and_then(|m| m.modified()).ok();
-    let summary = changed(&input::run_folder(folder).join(SUMMARY));
+    let summary = changed(&input::run_folder(folder).join(OutputFolder::SUMMARY));
     let certificate = changed(&folder.join(certify::certificate::FILE));
     summary.is_some() && changed(report) >= summary.max(certificate)
 }

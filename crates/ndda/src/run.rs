@@ -29,7 +29,7 @@ use std::time::Instant;
 
 use ndda_io::summary::{LabelWord, MonitorEnd, Status, Summary};
 use ndda_io::table::Table;
-use ndda_io::{OutputFolder, WriteError, checkpoint, summary, tables};
+use ndda_io::{OutputFolder, WriteError, checkpoint};
 use ndda_ranks::{Communicator, agree};
 use ndda_solver::{Simulation, Sink, StartSnapshot};
 
@@ -322,11 +322,11 @@ fn write_results(
     let has_ended = matches!(summary.status, Status::Done | Status::Failed);
     #[cfg(feature = "parquet")]
     if has_ended {
-        tables::write_parquet(folder, output)?;
+        folder.write_parquet(output)?;
     }
-    summary::write(&folder.summary(), summary)?;
+    summary.write(&folder.summary())?;
     if has_ended {
-        tables::remove_csv(folder, output)?;
+        folder.remove_csv(output)?;
     }
     log.line("ended")?;
     log.block(&(table::text(summary) + &table::ending(summary)))?;

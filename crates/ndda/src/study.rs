@@ -18,7 +18,7 @@ mod write;
 
 use std::path::{Path, PathBuf};
 
-use ndda_io::study::{self, LoadedStudy, Reference};
+use ndda_io::study::{LoadedStudy, Reference};
 use ndda_io::{OutputFolder, WriteError};
 
 use crate::choose;
@@ -49,7 +49,7 @@ impl Study {
     /// # Errors
     /// [`StudyError`] for what is wrong with it.
     pub fn open(study: &Path, out: Option<PathBuf>, overrides: &[String]) -> Result<Self, StudyError> {
-        let loaded = study::load(study).map_err(StudyError::Scene)?;
+        let loaded = LoadedStudy::load(study).map_err(StudyError::Scene)?;
         if loaded.study.is_sweep() {
             return Err(StudyError::IsSweep);
         }

@@ -24,7 +24,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use ndda_io::read;
-use ndda_io::study::{self, Axis, Correlation, LoadedStudy, Sampling, Study};
+use ndda_io::study::{Axis, Correlation, LoadedStudy, Sampling, Study};
 
 use crate::Model;
 use crate::places;
@@ -101,13 +101,13 @@ impl Sweep {
     /// [`StudyError`] for what is wrong with it.
     pub fn open(file: &Path, ask: &Ask) -> Result<Option<Self>, StudyError> {
         let mut loaded = match ask.vary.is_empty() {
-            true => study::load(file).map_err(|errors| match read::load(file, &[]) {
+            true => LoadedStudy::load(file).map_err(|errors| match read::load(file, &[]) {
                 Ok(_) => StudyError::SceneAlone(file.to_path_buf()),
                 Err(_) => StudyError::Scene(errors),
             })?,
             false => {
                 let mut study = Study::of_scene(file.to_path_buf());
-                study.axes = study::vary(&ask.vary).map_err(StudyError::Scene)?;
+                study.axes = Axis::from_words(&ask.vary).map_err(StudyError::Scene)?;
                 let text = read::text_of(file).map_err(StudyError::Scene)?;
                 LoadedStudy { study, curves: Vec::new(), scene: file.to_path_buf(), scene_text: text }
             }

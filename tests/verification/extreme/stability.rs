@@ -4,6 +4,7 @@
 //! cells, which `docs/evidence/stability/map.py` draws.
 
 use ndda::study::case::{Case, cases};
+use ndda_io::study::LoadedStudy;
 
 use super::labelled::{agrees, scene, summary_of, word};
 use crate::evidence::{Answer, row};
@@ -37,7 +38,7 @@ fn is_resolved(case: &Case) -> bool {
 
 #[test]
 fn a_run_knows_whether_it_is_accurate_whatever_the_penalty_and_the_step() {
-    let study = ndda_io::study::load(&scene("extreme/stability.ron")).unwrap();
+    let study = LoadedStudy::load(&scene("extreme/stability.ron")).unwrap();
     let all = std::env::var_os("NDDA_LARGE").is_some();
     let wanted = |case: &&Case| all || CELLS.contains(&(choice(case, "penalty"), choice(case, "step")));
     let cells = cases(&study).unwrap();

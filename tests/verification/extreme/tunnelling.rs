@@ -2,13 +2,14 @@
 //! steps that are controlled nothing does.
 
 use ndda::study::case::cases;
+use ndda_io::study::LoadedStudy;
 
 use super::labelled::{agrees, is_true, scene, summary_of, word};
 use crate::evidence::{Answer, row};
 
 #[test]
 fn whatever_jumps_through_a_plate_is_flagged_or_prevented() {
-    let study = ndda_io::study::load(&scene("extreme/thin_plate_steps.ron")).unwrap();
+    let study = LoadedStudy::load(&scene("extreme/thin_plate_steps.ron")).unwrap();
     let (mut through, mut differ, mut prevented) = (0, 0, 0);
     for case in cases(&study).unwrap() {
         let summary = summary_of("extreme/thin_plate.ron", &case.overrides);

@@ -1,7 +1,7 @@
 //! `ndda report` and `ndda view`: a run as one page that needs no network.
 
 use ndda::report::{self, ReportError, Written};
-use ndda_io::folder::REPORT;
+use ndda_io::OutputFolder;
 use serde_json::json;
 
 use crate::args::{ReportArgs, ViewArgs};
@@ -19,7 +19,7 @@ fn tell(written: &Written, events: Events) {
 
 /// Runs `ndda report`; returns the exit code.
 pub fn report(args: &ReportArgs) -> u8 {
-    let file = args.out.clone().unwrap_or_else(|| args.folder.join(REPORT));
+    let file = args.out.clone().unwrap_or_else(|| args.folder.join(OutputFolder::REPORT));
     let events = Events::new(args.json, events::REPORT);
     match report::write(&args.folder, &file, args.frames) {
         Ok(written) => {
@@ -33,7 +33,7 @@ pub fn report(args: &ReportArgs) -> u8 {
 
 /// Runs `ndda view`; returns the exit code.
 pub fn view(args: &ViewArgs) -> u8 {
-    let file = args.folder.join(REPORT);
+    let file = args.folder.join(OutputFolder::REPORT);
     let events = Events::new(args.json, events::REPORT);
     if !report::is_current(&args.folder, &file) {
         match report::write(&args.folder, &file, None) {

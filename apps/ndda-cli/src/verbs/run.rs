@@ -6,7 +6,6 @@ use std::time::Instant;
 use ndda::judge::table;
 use ndda::run::{Resting, Sensitivity};
 use ndda::{Run, RunError, places};
-use ndda_io::folder::SUMMARY;
 use ndda_io::summary::{LabelWord, Status, Summary};
 use ndda_io::{OutputFolder, WriteError};
 use serde::Serialize;
@@ -124,7 +123,7 @@ pub fn execute(run: Run, folder: &Path, options: &Options) -> u8 {
                 RunError::Write(_) => exit::INPUT_OUTPUT,
             };
             let code = options.events.fail(code, &error.to_string());
-            if !options.quiet && folder.join(SUMMARY).exists() {
+            if !options.quiet && folder.join(OutputFolder::SUMMARY).exists() {
                 let goes_on = if code == exit::INTERRUPTED { "resume" } else { "picture" };
                 say(&format!("results in {0}; next: ndda {goes_on} {0}", folder.display()));
             }

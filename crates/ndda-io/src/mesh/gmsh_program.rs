@@ -6,7 +6,7 @@ use crate::mesh::error::{Fault, ending};
 use crate::mesh::{FileProblem, MeshFile, MeshFileError};
 
 /// Environment variable that names the program.
-pub const VARIABLE: &str = "NDDA_GMSH";
+const VARIABLE: &str = "NDDA_GMSH";
 
 /// How long edges may be [unit of the file].
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -18,7 +18,7 @@ use std::path::Path;
 pub use crate::mesh::MeshFile as MshFile;
 use crate::mesh::error::whole_file;
 pub use error::{MshError, MshProblem, Place};
-pub use write::write;
+pub(crate) use write::write;
 
 /// Reads a Gmsh mesh.
 ///

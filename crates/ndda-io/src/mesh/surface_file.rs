@@ -40,16 +40,18 @@ impl Surface {
     }
 }
 
-/// Reads a closed surface: STL (ASCII or binary), OBJ, VTK's `.vtp` or legacy `.vtk`, by the ending of `path`.
-///
-/// Vertices nearer to each other than `tolerance` times the diagonal are one; 0 joins those that are equal. Faces
-/// that this leaves without area are dropped. A surface that is inside out as a whole is turned.
-///
-/// # Errors
-/// [`MeshFileError`] with the line of a text, and with the first open edges of a surface that is not closed.
-pub fn read(path: &Path, tolerance: f64) -> Result<Surface, MeshFileError> {
-    let bytes = bytes_of(path)?;
-    parse(&ending(path), &bytes, tolerance).map_err(|fault| fault.of(path))
+impl Surface {
+    /// Reads a closed surface: STL (ASCII or binary), OBJ, VTK's `.vtp` or legacy `.vtk`, by the ending of `path`.
+    ///
+    /// Vertices nearer to each other than `tolerance` times the diagonal are one; 0 joins those that are equal. Faces
+    /// that this leaves without area are dropped. A surface that is inside out as a whole is turned.
+    ///
+    /// # Errors
+    /// [`MeshFileError`] with the line of a text, and with the first open edges of a surface that is not closed.
+    pub fn read(path: &Path, tolerance: f64) -> Result<Self, MeshFileError> {
+        let bytes = bytes_of(path)?;
+        parse(&ending(path), &bytes, tolerance).map_err(|fault| fault.of(path))
+    }
 }
 
 /// The triangles of an STL as they are, whether or not they close a surface.

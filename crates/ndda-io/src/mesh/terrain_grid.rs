@@ -32,33 +32,27 @@ pub struct TerrainGrid {
     pub heights_m: Vec<Vec<Option<f64>>>,
 }
 
-/// Reads heights, by the ending of `path`; a surface of triangles is sampled at a two-hundredth of its longer side.
-///
-/// # Errors
-/// [`MeshFileError`] with the line of a text when the file cannot be read or understood, or holds no regular grid of heights in metres.
-pub fn read(path: &Path) -> Result<TerrainGrid, MeshFileError> {
-    read_sampled(path, None)
-}
-
-/// Reads heights as [`read`] does, and samples a surface of triangles at this distance [m].
-///
-/// # Errors
-/// As [`read`].
-pub fn read_sampled(path: &Path, sample_m: Option<f64>) -> Result<TerrainGrid, MeshFileError> {
-    let ending = ending(path);
-    let parse: fn(&[u8], Option<f64>) -> Result<TerrainGrid, Fault> = match ending.as_str() {
-        "asc" => |bytes, _| grid(bytes),
-        "xyz" | "txt" | "csv" => |bytes, _| points::read(bytes),
-        "tif" | "tiff" => |bytes, _| geotiff::read(bytes),
-        "stl" => |bytes, sample_m| sampled::sample(&surface_file::open_stl(bytes)?, sample_m),
-        _ => {
-            let known = ".asc, .xyz, .txt, .csv, .tif, .tiff, .stl";
-            return Err(Fault::from(FileProblem::Extension { found: ending, known }).of(path));
-        }
-    };
-    let bytes = limited::file(path)
-        .map_err(|error| Fault::from(FileProblem::Unreadable(error.to_string())).of(path))?;
-    parse(&bytes, sample_m).map_err(|fault| fault.of(path))
+impl TerrainGrid {
+    /// Reads heights, by the ending of `path`; a surface of triangles is sampled at this distance [m], or at a two-hundredth of its longer side.
+    ///
+    /// # Errors
+    /// [`MeshFileError`] with the line of a text when the file cannot be read or understood, or holds no regular grid of heights in metres.
+    pub fn read(path: &Path, sample_m: Option<f64>) -> Result<Self, MeshFileError> {
+        let ending = ending(path);
+        let parse: fn(&[u8], Option<f64>) -> Result<Self, Fault> = match ending.as_str() {
+            "asc" => |bytes, _| grid(bytes),
+            "xyz" | "txt" | "csv" => |bytes, _| points::read(bytes),
+            "tif" | "tiff" => |bytes, _| geotiff::read(bytes),
+            "stl" => |bytes, sample_m| sampled::sample(&surface_file::open_stl(bytes)?, sample_m),
+            _ => {
+                let known = ".asc, .xyz, .txt, .csv, .tif, .tiff, .stl";
+                return Err(Fault::from(FileProblem::Extension { found: ending, known }).of(path));
+            }
+        };
+        let bytes = limited::file(path)
+            .map_err(|error| Fault::from(FileProblem::Unreadable(error.to_string())).of(path))?;
+        parse(&bytes, sample_m).map_err(|fault| fault.of(path))
+    }
 }
 
 fn grid(bytes: &[u8]) -> Result<TerrainGrid, Fault> {

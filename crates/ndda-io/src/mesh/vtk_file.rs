@@ -1,7 +1,7 @@
 //! VTK's files: meshes from `.vtu` and legacy `.vtk`, and what a mesh and blocks are written to.
 //!
-//! Format: VTK user's guide, "VTK File Formats". Legacy files are written by `vtkio`. XML is read and written here: `vtkio` keeps no field
-//! data, where the names of bodies are, and no faces of polyhedra, unpacks only with a crate that has an advisory, and gives no line for what it refuses.
+//! Format: VTK user's guide, "VTK File Formats". All is read and written here: the crate `vtkio` keeps no field data, where the names of bodies
+//! are, and no faces of polyhedra, unpacks only with a crate that has an advisory, and gives no line for what it refuses.
 
 mod base64;
 mod binary;
@@ -11,7 +11,7 @@ mod legacy;
 mod polyhedra;
 mod sections;
 mod write;
-mod write_legacy;
+pub(super) mod write_legacy;
 mod xml;
 
 use std::path::Path;
@@ -22,8 +22,7 @@ use crate::mesh::{MeshFile, MeshFileError};
 pub use data::Array;
 pub(crate) use data::{Data, TETRA};
 pub use polyhedra::write as write_polyhedra;
-pub use write::write;
-pub use write_legacy::write as write_legacy;
+pub(crate) use write::write;
 
 /// Reads a mesh: `.vtu` (ASCII, binary, appended; plain or zlib) or legacy `.vtk` (ASCII or binary).
 ///

@@ -8,14 +8,14 @@ use crate::atomic;
 use crate::mesh::error::{Fault, bytes_of};
 use crate::mesh::vtk_file::{self, Data};
 use crate::mesh::{FileProblem, MeshFileError};
-use crate::results::folder::{FIELDS_FOLDER, OutputFolder};
+use crate::results::folder::OutputFolder;
 use crate::write_error::WriteError;
 
 /// Number of the line among VTK's cell types.
 const LINE: u8 = 3;
 
 /// Name of the file of the lines of a frame: `bolts_000012.vtu`.
-pub fn bolts_name(number: usize) -> String {
+pub(super) fn bolts_name(number: usize) -> String {
     format!("bolts_{number:06}.vtu")
 }
 
@@ -52,7 +52,7 @@ impl BoltSeries {
     /// # Errors
     /// [`WriteError::Io`] when the folder of the frames cannot be created.
     pub fn new(folder: &OutputFolder, times_s: Vec<f64>) -> Result<Self, WriteError> {
-        let frames = folder.path().join(FIELDS_FOLDER);
+        let frames = folder.path().join(OutputFolder::FIELDS_FOLDER);
         fs::create_dir_all(&frames).map_err(WriteError::io("create", &frames))?;
         Ok(Self { index: folder.bolts_index(), frames, times_s })
     }
@@ -80,7 +80,8 @@ impl BoltSeries {
         for (k, time_s) in self.times_s.iter().enumerate() {
             let _ = writeln!(
                 text,
-                "<DataSet timestep=\"{time_s:?}\" file=\"{FIELDS_FOLDER}/{}\"/>",
+                "<DataSet timestep=\"{time_s:?}\" file=\"{}/{}\"/>",
+                OutputFolder::FIELDS_FOLDER,
                 bolts_name(k)
             );
         }
@@ -88,13 +89,15 @@ impl BoltSeries {
     }
 }
 
-/// Reads the lines of a frame.
-///
-/// # Errors
-/// [`MeshFileError`] when the file cannot be read, holds other cells than lines, or lacks an array.
-pub fn bolt_lines(path: &Path) -> Result<Vec<BoltLine>, MeshFileError> {
-    let bytes = bytes_of(path)?;
-    vtk_file::data(&bytes).and_then(|data| from_data(&data)).map_err(|fault| fault.of(path))
+impl BoltLine {
+    /// Reads the lines of a frame.
+    ///
+    /// # Errors
+    /// [`MeshFileError`] when the file cannot be read, holds other cells than lines, or lacks an array.
+    pub fn read_all(path: &Path) -> Result<Vec<Self>, MeshFileError> {
+        let bytes = bytes_of(path)?;
+        vtk_file::data(&bytes).and_then(|data| from_data(&data)).map_err(|fault| fault.of(path))
+    }
 }
 
 fn from_data(data: &Data) -> Result<Vec<BoltLine>, Fault> {
@@ -161,7 +164,7 @@ fn array(text: &mut String, kind: &str, name: &str, components: usize, values: i
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::frame_list;
+    use crate::results::ListedFrame;
 
     fn lines() -> Vec<BoltLine> {
         let line = |k: usize| BoltLine {
@@ -183,10 +186,10 @@ mod tests {
         let mut series = BoltSeries::new(&output, Vec::new()).unwrap();
         series.push(0.0, &[]).unwrap();
         series.push(0.1 + 0.2, &lines()).unwrap();
-        let listed = frame_list(&output.bolts_index()).unwrap();
+        let listed = ListedFrame::read_all(&output.bolts_index()).unwrap();
         assert_eq!(listed.iter().map(|frame| frame.time_s).collect::<Vec<_>>(), [0.0, 0.1 + 0.2]);
-        assert_eq!(bolt_lines(&listed[0].path).unwrap(), []);
-        assert_eq!(bolt_lines(&listed[1].path).unwrap(), lines());
+        assert_eq!(BoltLine::read_all(&listed[0].path).unwrap(), []);
+        assert_eq!(BoltLine::read_all(&listed[1].path).unwrap(), lines());
     }
 
     #[test]
@@ -196,12 +199,15 @@ mod tests {
         let whole = file(&lines());
         for part in 1..20 {
             fs::write(&path, &whole[..whole.len() * part / 20]).unwrap();
-            assert!(bolt_lines(&path).unwrap_err().to_string().contains("bolts_000001.vtu"), "{part}");
+            assert!(
+                BoltLine::read_all(&path).unwrap_err().to_string().contains("bolts_000001.vtu"),
+                "{part}"
+            );
         }
         for (from, to) in [("\"axial_n\"", "\"force\""), ("3 3 3 3", "3 3 1 3"), ("2 4 6 8", "2 4 5 8")] {
             assert!(whole.contains(from), "{from}");
             fs::write(&path, whole.replace(from, to)).unwrap();
-            let error = bolt_lines(&path).unwrap_err().to_string();
+            let error = BoltLine::read_all(&path).unwrap_err().to_string();
             assert!(error.contains("bolts_000001.vtu"), "{error}");
         }
     }

@@ -130,19 +130,21 @@ impl<W: Write> Write for Encoding<W> {
     }
 }
 
-/// Writes a checkpoint; the file that was there becomes the previous one.
-///
-/// # Errors
-/// [`WriteError`] when the value cannot be encoded or the file not be written; the files before are then as they were.
-pub fn write(folder: &OutputFolder, value: &impl Serialize) -> Result<(), WriteError> {
-    let (path, previous) = (folder.checkpoint(), folder.previous_checkpoint());
-    let waiting = folder.waiting_checkpoint();
-    write_file(&waiting, value)?;
-    match fs::rename(&path, &previous) {
-        Err(e) if e.kind() != ErrorKind::NotFound => return Err(WriteError::io("rename", &path)(e)),
-        _ => {}
+impl OutputFolder {
+    /// Writes a checkpoint; the file that was there becomes the previous one.
+    ///
+    /// # Errors
+    /// [`WriteError`] when the value cannot be encoded or the file not be written; the files before are then as they were.
+    pub fn write_checkpoint(&self, value: &impl Serialize) -> Result<(), WriteError> {
+        let (path, previous) = (self.checkpoint(), self.previous_checkpoint());
+        let waiting = self.waiting_checkpoint();
+        write_file(&waiting, value)?;
+        match fs::rename(&path, &previous) {
+            Err(e) if e.kind() != ErrorKind::NotFound => return Err(WriteError::io("rename", &path)(e)),
+            _ => {}
+        }
+        fs::rename(&waiting, &path).map_err(WriteError::io("rename the new checkpoint to", &path))
     }
-    fs::rename(&waiting, &path).map_err(WriteError::io("rename the new checkpoint to", &path))
 }
 
 /// Writes a checkpoint to a file of its own, whole or not at all.
@@ -166,38 +168,42 @@ pub fn write_file(path: &Path, value: &impl Serialize) -> Result<(), WriteError>
     })
 }
 
-/// Reads the newest checkpoint of a folder that is whole and of its run, and says why a newer one was passed over;
-/// `fits` says what a foreign one gives itself away by.
-///
-/// # Errors
-/// [`CheckpointError`] of the newest file when none can be used.
-pub fn read<T: DeserializeOwned>(
-    folder: &OutputFolder,
-    fits: impl Fn(&T) -> Result<(), String>,
-) -> Result<(T, Option<CheckpointError>), CheckpointError> {
-    let mut passed_over = None;
-    for path in [folder.checkpoint(), folder.previous_checkpoint()] {
-        let found = read_file(&path).and_then(|found| match found.as_ref().map_or(Ok(()), &fits) {
-            Ok(()) => Ok(found),
-            Err(what) => Err(CheckpointError::Foreign { path: path.clone(), what }),
-        });
-        match found {
-            Ok(Some(value)) => return Ok((value, passed_over)),
-            Ok(None) => {}
-            Err(error) => passed_over = passed_over.or(Some(error)),
+impl OutputFolder {
+    /// Reads the newest checkpoint of a folder that is whole and of its run, and says why a newer one was passed over;
+    /// `fits` says what a foreign one gives itself away by.
+    ///
+    /// # Errors
+    /// [`CheckpointError`] of the newest file when none can be used.
+    pub fn read_checkpoint<T: DeserializeOwned>(
+        &self,
+        fits: impl Fn(&T) -> Result<(), String>,
+    ) -> Result<(T, Option<CheckpointError>), CheckpointError> {
+        let mut passed_over = None;
+        for path in [self.checkpoint(), self.previous_checkpoint()] {
+            let found = read_file(&path).and_then(|found| match found.as_ref().map_or(Ok(()), &fits) {
+                Ok(()) => Ok(found),
+                Err(what) => Err(CheckpointError::Foreign { path: path.clone(), what }),
+            });
+            match found {
+                Ok(Some(value)) => return Ok((value, passed_over)),
+                Ok(None) => {}
+                Err(error) => passed_over = passed_over.or(Some(error)),
+            }
         }
+        Err(passed_over.unwrap_or(CheckpointError::None { folder: self.path().to_path_buf() }))
     }
-    Err(passed_over.unwrap_or(CheckpointError::None { folder: folder.path().to_path_buf() }))
 }
 
-/// Puts the checkpoint before in the place of a newer one that cannot be used, so that the next one written does not
-/// take its place.
-///
-/// # Errors
-/// [`WriteError::Io`] when the file cannot be renamed.
-pub fn go_back(folder: &OutputFolder) -> Result<(), WriteError> {
-    let previous = folder.previous_checkpoint();
-    fs::rename(&previous, folder.checkpoint()).map_err(WriteError::io("rename", &previous))
+impl OutputFolder {
+    /// Puts the checkpoint before in the place of a newer one that cannot be used, so that the next one written does not
+    /// take its place.
+    ///
+    /// # Errors
+    /// [`WriteError::Io`] when the file cannot be renamed.
+    pub fn go_back(&self) -> Result<(), WriteError> {
+        let previous = self.previous_checkpoint();
+        fs::rename(&previous, self.checkpoint()).map_err(WriteError::io("rename", &previous))
+    }
 }
 
 /// Reads a checkpoint from a file; none where there is no file.
@@ -247,12 +253,12 @@ mod tests {
     fn a_checkpoint_comes_back_bit_for_bit_and_the_one_before_is_kept() {
         let (_place, folder) = folder();
         let value = vec![0.1 + 0.2, -0.0, f64::MIN_POSITIVE / 8.0, f64::INFINITY];
-        write(&folder, &vec![1.0f64]).unwrap();
-        write(&folder, &value).unwrap();
-        let (found, passed_over): (Vec<f64>, _) = read(&folder, any).unwrap();
+        folder.write_checkpoint(&vec![1.0f64]).unwrap();
+        folder.write_checkpoint(&value).unwrap();
+        let (found, passed_over): (Vec<f64>, _) = folder.read_checkpoint(any).unwrap();
         assert!(found.iter().zip(&value).all(|(a, b)| a.to_bits() == b.to_bits()) && passed_over.is_none());
         fs::remove_file(folder.checkpoint()).unwrap();
-        assert_eq!(read(&folder, any::<Vec<f64>>).unwrap().0, [1.0]);
+        assert_eq!(folder.read_checkpoint(any::<Vec<f64>>).unwrap().0, [1.0]);
     }
 
     fn any<T>(_: &T) -> Result<(), String> {
@@ -262,25 +268,28 @@ mod tests {
     #[test]
     fn one_of_another_run_is_passed_over_and_does_not_come_back() {
         let (_place, folder) = folder();
-        write(&folder, &1.0f64).unwrap();
-        write(&folder, &2.0f64).unwrap();
+        folder.write_checkpoint(&1.0f64).unwrap();
+        folder.write_checkpoint(&2.0f64).unwrap();
         let fits = |value: &f64| if *value == 1.0 { Ok(()) } else { Err("it is two".to_owned()) };
-        let (found, passed_over) = read(&folder, fits).unwrap();
+        let (found, passed_over) = folder.read_checkpoint(fits).unwrap();
         assert!(found == 1.0 && matches!(passed_over, Some(CheckpointError::Foreign { .. })));
-        go_back(&folder).unwrap();
-        assert!(read(&folder, fits).unwrap().1.is_none() && !folder.previous_checkpoint().exists());
+        folder.go_back().unwrap();
+        assert!(folder.read_checkpoint(fits).unwrap().1.is_none() && !folder.previous_checkpoint().exists());
     }
 
     #[test]
     fn a_folder_without_one_and_another_format_are_named() {
         let (_place, folder) = folder();
-        assert!(matches!(read(&folder, any::<f64>), Err(CheckpointError::None { .. })));
+        assert!(matches!(folder.read_checkpoint(any::<f64>), Err(CheckpointError::None { .. })));
         let mut bytes = MAGIC.to_vec();
         bytes.extend_from_slice(&99u32.to_le_bytes());
         bytes.extend_from_slice(&0u64.to_le_bytes());
         bytes.extend_from_slice(&crc32fast::hash(&bytes).to_le_bytes());
         fs::write(folder.checkpoint(), bytes).unwrap();
-        assert!(matches!(read(&folder, any::<f64>), Err(CheckpointError::Version { found: 99, .. })));
+        assert!(matches!(
+            folder.read_checkpoint(any::<f64>),
+            Err(CheckpointError::Version { found: 99, .. })
+        ));
     }
 
     proptest! {
@@ -288,13 +297,13 @@ mod tests {
         fn a_damaged_file_is_passed_over_for_the_one_before(at in 0usize..1000, cut in prop::bool::ANY, bit in 0u8..8) {
             let (_place, folder) = folder();
             let values = [vec![1.5f64; 7], vec![2.5f64; 9]];
-            write(&folder, &values[0]).unwrap();
-            write(&folder, &values[1]).unwrap();
+            folder.write_checkpoint(&values[0]).unwrap();
+            folder.write_checkpoint(&values[1]).unwrap();
             let mut bytes = fs::read(folder.checkpoint()).unwrap();
             let at = at % bytes.len();
             if cut { bytes.truncate(at) } else { bytes[at] ^= 1 << bit }
             fs::write(folder.checkpoint(), bytes).unwrap();
-            let (found, passed_over): (Vec<f64>, _) = read(&folder, any).unwrap();
+            let (found, passed_over): (Vec<f64>, _) = folder.read_checkpoint(any).unwrap();
             prop_assert_eq!(&found, &values[0]);
             prop_assert!(passed_over.is_some());
         }

@@ -13,30 +13,8 @@ use earlier_run::{
     refuse_while_in_use,
 };
 
-/// File of the end-of-run summary.
-pub const SUMMARY: &str = "summary.json";
-/// File of the history.
-pub const HISTORY: &str = "history.csv";
-/// File of the contacts.
-pub const CONTACTS: &str = "contacts.csv";
-/// File of the motion of blocks.
-pub const BLOCKS: &str = "blocks.csv";
-/// File of the bolts.
-pub const BOLTS: &str = "bolts.csv";
-/// File that lists the frames of bolts.
-pub const BOLTS_INDEX: &str = "bolts.pvd";
-/// The tables in columnar form.
-pub const PARQUET: [&str; 3] = ["history.parquet", "contacts.parquet", "blocks.parquet"];
-/// The log of the run.
-pub const LOG: &str = "run.log";
-/// File that lists the frames of fields.
-pub const FIELDS_INDEX: &str = "fields.pvd";
-/// File of the report as a page.
-pub const REPORT: &str = "report.html";
 /// Files of `ndda picture`, if no other name is given.
-pub const PICTURES: [&str; 3] = ["picture.png", "picture.svg", "animation.png"];
-/// The newest checkpoint.
-pub const CHECKPOINT: &str = "checkpoint.ndda";
+const PICTURES: [&str; 3] = ["picture.png", "picture.svg", "animation.png"];
 /// The checkpoint before.
 const PREVIOUS: &str = "checkpoint.previous.ndda";
 /// A checkpoint that is whole and not yet in its place.
@@ -44,40 +22,31 @@ const WAITING: &str = "checkpoint.new.ndda";
 /// Beginning and ending of the name of a checkpoint at the end of a stage.
 const OF_STAGE: &str = "checkpoint.stage.";
 const ENDING: &str = ".ndda";
-/// Folder of the frames.
-pub const FIELDS_FOLDER: &str = "fields";
 
 /// Files at the top of the folder, in the order in which an earlier run is deleted: an index before what it lists.
 const TOP_FILES: [&str; 18] = [
-    CHECKPOINT,
+    OutputFolder::CHECKPOINT,
     PREVIOUS,
     WAITING,
-    REPORT,
+    OutputFolder::REPORT,
     PICTURES[0],
     PICTURES[1],
     PICTURES[2],
-    FIELDS_INDEX,
-    HISTORY,
-    CONTACTS,
-    BLOCKS,
-    BOLTS_INDEX,
-    BOLTS,
-    PARQUET[0],
-    PARQUET[1],
-    PARQUET[2],
-    LOG,
-    SUMMARY,
+    OutputFolder::FIELDS_INDEX,
+    OutputFolder::HISTORY,
+    OutputFolder::CONTACTS,
+    OutputFolder::BLOCKS,
+    OutputFolder::BOLTS_INDEX,
+    OutputFolder::BOLTS,
+    OutputFolder::PARQUET[0],
+    OutputFolder::PARQUET[1],
+    OutputFolder::PARQUET[2],
+    OutputFolder::LOG,
+    OutputFolder::SUMMARY,
 ];
-/// Report of `ndda mesh`, which keeps its other files beside it.
-pub const MESH_REPORT: &str = "mesh.json";
 const PROBE: &str = "ndda-probe.tmp";
 // Enough to show a full disk; a mebibyte takes as long as the steps of a small scene.
 const PROBE_BYTES: usize = 1 << 17;
-
-/// Name of a frame's file: `frame_000012.vtu`.
-pub fn frame_name(number: usize) -> String {
-    format!("frame_{number:06}.vtu")
-}
 
 /// A folder that exists, holds no earlier run, and can be written to.
 #[derive(Clone, Debug, PartialEq)]
@@ -86,6 +55,33 @@ pub struct OutputFolder {
 }
 
 impl OutputFolder {
+    /// File of the end-of-run summary.
+    pub const SUMMARY: &str = "summary.json";
+    /// File of the history.
+    pub const HISTORY: &str = "history.csv";
+    /// File of the contacts.
+    pub const CONTACTS: &str = "contacts.csv";
+    /// File of the motion of blocks.
+    pub const BLOCKS: &str = "blocks.csv";
+    /// File of the bolts.
+    pub const BOLTS: &str = "bolts.csv";
+    /// File that lists the frames of bolts.
+    pub const BOLTS_INDEX: &str = "bolts.pvd";
+    /// The tables in columnar form.
+    pub const PARQUET: [&str; 3] = ["history.parquet", "contacts.parquet", "blocks.parquet"];
+    /// The log of the run.
+    pub const LOG: &str = "run.log";
+    /// File that lists the frames of fields.
+    pub const FIELDS_INDEX: &str = "fields.pvd";
+    /// File of the report as a page.
+    pub const REPORT: &str = "report.html";
+    /// The newest checkpoint.
+    pub const CHECKPOINT: &str = "checkpoint.ndda";
+    /// Folder of the frames.
+    pub const FIELDS_FOLDER: &str = "fields";
+    /// Report of `ndda mesh`, which keeps its other files beside it.
+    pub const MESH_REPORT: &str = "mesh.json";
+
     /// Makes the folder at `path` ready for a run; parents are created.
     ///
     /// With `force` the files of an earlier run are deleted: those that ndda writes, by name, and nothing else; a folder
@@ -118,9 +114,17 @@ impl OutputFolder {
     /// # Errors
     /// [`WriteError::RunFolder`] when it is.
     pub fn refuse_run(path: &Path) -> Result<(), WriteError> {
-        let found = [SUMMARY, LOG, HISTORY, CHECKPOINT].into_iter().find(|name| path.join(name).is_file());
+        let found =
+            [OutputFolder::SUMMARY, OutputFolder::LOG, OutputFolder::HISTORY, OutputFolder::CHECKPOINT]
+                .into_iter()
+                .find(|name| path.join(name).is_file());
         let refuse = |found: &str| WriteError::RunFolder { path: path.to_path_buf(), found: found.into() };
         found.map_or(Ok(()), |found| Err(refuse(found)))
+    }
+
+    /// Name of a frame's file: `frame_000012.vtu`.
+    pub fn frame_name(number: usize) -> String {
+        format!("frame_{number:06}.vtu")
     }
 
     /// The folder.
@@ -141,7 +145,7 @@ impl OutputFolder {
 
     /// Path of the newest checkpoint.
     pub fn checkpoint(&self) -> PathBuf {
-        self.path.join(CHECKPOINT)
+        self.path.join(OutputFolder::CHECKPOINT)
     }
 
     /// Path of the checkpoint before.
@@ -166,42 +170,42 @@ impl OutputFolder {
 
     /// Path of the summary.
     pub fn summary(&self) -> PathBuf {
-        self.path.join(SUMMARY)
+        self.path.join(OutputFolder::SUMMARY)
     }
 
     /// Path of the history.
     pub fn history(&self) -> PathBuf {
-        self.path.join(HISTORY)
+        self.path.join(OutputFolder::HISTORY)
     }
 
     /// Path of the contacts.
     pub fn contacts(&self) -> PathBuf {
-        self.path.join(CONTACTS)
+        self.path.join(OutputFolder::CONTACTS)
     }
 
     /// Path of the motion of blocks.
     pub fn blocks(&self) -> PathBuf {
-        self.path.join(BLOCKS)
+        self.path.join(OutputFolder::BLOCKS)
     }
 
     /// Path of the log.
     pub fn log(&self) -> PathBuf {
-        self.path.join(LOG)
+        self.path.join(OutputFolder::LOG)
     }
 
     /// Path of the bolts.
     pub fn bolts(&self) -> PathBuf {
-        self.path.join(BOLTS)
+        self.path.join(OutputFolder::BOLTS)
     }
 
     /// Path of the list of frames of bolts.
     pub fn bolts_index(&self) -> PathBuf {
-        self.path.join(BOLTS_INDEX)
+        self.path.join(OutputFolder::BOLTS_INDEX)
     }
 
     /// Path of the list of frames.
     pub fn fields_index(&self) -> PathBuf {
-        self.path.join(FIELDS_INDEX)
+        self.path.join(OutputFolder::FIELDS_INDEX)
     }
 }
 
@@ -228,7 +232,7 @@ mod tests {
     }
 
     fn earlier_run(folder: &Path) {
-        fs::create_dir_all(folder.join(FIELDS_FOLDER)).unwrap();
+        fs::create_dir_all(folder.join(OutputFolder::FIELDS_FOLDER)).unwrap();
         for name in ["summary.json", "history.csv", "fields.pvd", "fields.pvd.tmp", "fields/frame_000000.vtu"]
         {
             fs::write(folder.join(name), "old").unwrap();

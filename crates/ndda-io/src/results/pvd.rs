@@ -5,8 +5,8 @@ use std::fs;
 use std::path::PathBuf;
 
 use crate::atomic;
-use crate::results::folder::{FIELDS_FOLDER, OutputFolder, frame_name};
-use crate::results::vtu::{self, Frame, Topology};
+use crate::results::folder::OutputFolder;
+use crate::results::vtu::{Frame, Topology};
 use crate::write_error::WriteError;
 
 /// Writes frames one after the other and keeps the index up to date: a file that is listed is whole.
@@ -26,7 +26,7 @@ impl FieldSeries {
     /// # Errors
     /// [`WriteError::Io`] when the folder of the frames cannot be created.
     pub fn create(folder: &OutputFolder, topology: Topology) -> Result<Self, WriteError> {
-        let frames = folder.path().join(FIELDS_FOLDER);
+        let frames = folder.path().join(OutputFolder::FIELDS_FOLDER);
         fs::create_dir_all(&frames).map_err(WriteError::io("create", &frames))?;
         let index = folder.fields_index();
         Ok(Self { index, frames, topology, times_s: Vec::new(), unsynced: Vec::new() })
@@ -44,7 +44,8 @@ impl FieldSeries {
             let file = fs::metadata(series.frames.join(name));
             !file.is_ok_and(|file| file.is_file() && file.len() > 0)
         };
-        let lost: Vec<String> = (0..series.times_s.len()).map(frame_name).filter(is_lost).collect();
+        let lost: Vec<String> =
+            (0..series.times_s.len()).map(OutputFolder::frame_name).filter(is_lost).collect();
         if !lost.is_empty() {
             return Err(WriteError::LostFrames { folder: series.frames, frames: lost });
         }
@@ -61,10 +62,10 @@ impl FieldSeries {
     /// are on the disk for good after the next [`sync`](Self::sync).
     ///
     /// # Errors
-    /// As [`vtu::encode`], or [`WriteError::Io`]; the index then still lists the frames before.
+    /// As [`Frame::encode`], or [`WriteError::Io`]; the index then still lists the frames before.
     ///
     /// # Panics
-    /// When times do not increase, and as [`vtu::encode`].
+    /// When times do not increase, and as [`Frame::encode`].
     pub fn push(&mut self, time_s: f64, frame: &Frame) -> Result<(), WriteError> {
         let number = self.times_s.len();
         if !time_s.is_finite() {
@@ -73,8 +74,8 @@ impl FieldSeries {
         if let Some(last) = self.times_s.last() {
             assert!(time_s > *last, "frame at {time_s} s after one at {last} s");
         }
-        let path = self.frames.join(frame_name(number));
-        atomic::write_unsynced(&path, &vtu::encode(&path, &self.topology, frame)?)?;
+        let path = self.frames.join(OutputFolder::frame_name(number));
+        atomic::write_unsynced(&path, &frame.encode(&path, &self.topology)?)?;
         self.times_s.push(time_s);
         let written = atomic::write_unsynced(&self.index, self.text().as_bytes());
         match &written {
@@ -104,10 +105,11 @@ impl FieldSeries {
              <Collection>\n",
         );
         for (number, time_s) in self.times_s.iter().enumerate() {
-            let file = frame_name(number);
+            let file = OutputFolder::frame_name(number);
             writeln!(
                 text,
-                "    <DataSet timestep=\"{time_s:?}\" part=\"0\" file=\"{FIELDS_FOLDER}/{file}\"/>"
+                "    <DataSet timestep=\"{time_s:?}\" part=\"0\" file=\"{}/{file}\"/>",
+                OutputFolder::FIELDS_FOLDER
             )
             .expect("writing to memory");
         }

@@ -7,14 +7,14 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::mesh::MeshFileError;
-use crate::results::folder::{HISTORY, PARQUET};
+use crate::results::folder::OutputFolder;
 use crate::results::summary::Summary;
-use crate::results::table::{self, TableError};
+use crate::results::table::TableError;
 
 pub use crate::mesh::vtk_file::Array;
 pub use crate::results::table::Table;
-pub use bolts::{BoltForces, bolt_forces};
-pub use fields::{FieldFrame, ListedFrame, frame, frame_list};
+pub use bolts::BoltForces;
+pub use fields::{FieldFrame, ListedFrame};
 
 /// Why results cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -43,33 +43,37 @@ pub enum ResultsError {
     Fields(#[from] MeshFileError),
 }
 
-/// Reads `summary.json`.
-///
-/// # Errors
-/// [`ResultsError`] when the file cannot be read, or is no summary of this version.
-pub fn summary(path: &Path) -> Result<Summary, ResultsError> {
-    let unreadable = |source| ResultsError::Unreadable { path: path.to_path_buf(), source };
-    let text = fs::read_to_string(path).map_err(unreadable)?;
-    serde_json::from_str(&text).map_err(|source| ResultsError::Summary { path: path.to_path_buf(), source })
+impl Summary {
+    /// Reads `summary.json`.
+    ///
+    /// # Errors
+    /// [`ResultsError`] when the file cannot be read, or is no summary of this version.
+    pub fn read(path: &Path) -> Result<Self, ResultsError> {
+        let unreadable = |source| ResultsError::Unreadable { path: path.to_path_buf(), source };
+        let text = fs::read_to_string(path).map_err(unreadable)?;
+        serde_json::from_str(&text)
+            .map_err(|source| ResultsError::Summary { path: path.to_path_buf(), source })
+    }
 }
 
-/// The history in the output folder of a run: as text, or else in columns.
-pub fn history_file(folder: &Path) -> Option<PathBuf> {
-    [HISTORY, PARQUET[0]].map(|name| folder.join(name)).into_iter().find(|file| file.is_file())
-}
-
-/// Reads a history.
-///
-/// # Errors
-/// [`ResultsError`] when the file cannot be read, or a row is not one number per column.
-pub fn history(path: &Path) -> Result<Table, ResultsError> {
-    Ok(table::read(path)?)
+impl OutputFolder {
+    /// The history in the output folder of a run: as text, or else in columns.
+    pub fn history_in(folder: &Path) -> Option<PathBuf> {
+        [OutputFolder::HISTORY, OutputFolder::PARQUET[0]]
+            .map(|name| folder.join(name))
+            .into_iter()
+            .find(|file| file.is_file())
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::History;
+
+    fn history(path: &Path) -> Result<Table, ResultsError> {
+        Ok(Table::read(path)?)
+    }
 
     #[test]
     fn a_history_is_read_back_bit_by_bit() {
@@ -102,7 +106,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("summary.json");
         std::fs::write(&path, "{\n  \"version\": 3 }").unwrap();
-        let error = summary(&path).unwrap_err().to_string();
+        let error = Summary::read(&path).unwrap_err().to_string();
         assert!(error.contains("line 2") && error.contains("run the scene again"), "{error}");
     }
 }

@@ -165,27 +165,29 @@ pub struct Invariants {
     pub max_h: f64,
 }
 
-/// Writes the summary to `path`, replacing an older file whole.
-///
-/// # Errors
-/// [`WriteError::NotFinite`] with the key of the first number that is not finite, before anything is written;
-/// [`WriteError::Io`] when the file cannot be written.
-pub fn write(path: &Path, summary: &Summary) -> Result<(), WriteError> {
-    let encode =
-        |e: serde_json::Error| WriteError::Encode { path: path.to_path_buf(), reason: e.to_string() };
-    let mut nulls = Nulls::default();
-    serde_json::to_writer(&mut nulls, summary).map_err(encode)?;
-    if nulls.count > usize::from(summary.reference.is_none()) {
-        let tree = serde_json::to_value(summary).map_err(encode)?;
-        let key = first_null(&tree, "").unwrap_or_default();
-        return Err(WriteError::not_finite(path, key, None));
+impl Summary {
+    /// Writes the summary to `path`, replacing an older file whole.
+    ///
+    /// # Errors
+    /// [`WriteError::NotFinite`] with the key of the first number that is not finite, before anything is written;
+    /// [`WriteError::Io`] when the file cannot be written.
+    pub fn write(&self, path: &Path) -> Result<(), WriteError> {
+        let encode =
+            |e: serde_json::Error| WriteError::Encode { path: path.to_path_buf(), reason: e.to_string() };
+        let mut nulls = Nulls::default();
+        serde_json::to_writer(&mut nulls, self).map_err(encode)?;
+        if nulls.count > usize::from(self.reference.is_none()) {
+            let tree = serde_json::to_value(self).map_err(encode)?;
+            let key = first_null(&tree, "").unwrap_or_default();
+            return Err(WriteError::not_finite(path, key, None));
+        }
+        atomic::write_by(path, |file| {
+            let mut out = BufWriter::new(file);
+            serde_json::to_writer_pretty(&mut out, self)?;
+            out.write_all(b"\n")?;
+            out.flush()
+        })
     }
-    atomic::write_by(path, |file| {
-        let mut out = BufWriter::new(file);
-        serde_json::to_writer_pretty(&mut out, summary)?;
-        out.write_all(b"\n")?;
-        out.flush()
-    })
 }
 
 /// Counts the nulls of a text in JSON that is written to it: a summary of a million blocks need not be in memory once more to be looked through.
@@ -283,7 +285,7 @@ mod tests {
     fn written(summary: &Summary) -> (String, Value) {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("summary.json");
-        write(&path, summary).unwrap();
+        summary.write(&path).unwrap();
         let text = fs::read_to_string(&path).unwrap();
         let value = serde_json::from_str(&text).unwrap();
         (text, value)
@@ -348,7 +350,7 @@ mod tests {
     fn a_number_that_is_not_finite_is_refused_by_its_key() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("summary.json");
-        let refused = |summary: &Summary| match write(&path, summary).unwrap_err() {
+        let refused = |summary: &Summary| match summary.write(&path).unwrap_err() {
             WriteError::NotFinite { array, .. } => array,
             other => panic!("{other}"),
         };

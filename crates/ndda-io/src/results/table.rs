@@ -55,34 +55,36 @@ impl Table {
     }
 }
 
-/// Reads a table such as `history.csv` or `history.parquet`.
-///
-/// # Errors
-/// [`TableError`] naming the file, and row and column of a value that is not a number.
-pub fn read(file: &Path) -> Result<Table, TableError> {
-    if file.extension().is_some_and(|ending| ending == "parquet") {
-        return columns(file);
-    }
-    let broken = |error: csv::Error| TableError::Unreadable {
-        file: file.to_path_buf(),
-        reason: crate::csv_text::in_words(&error),
-    };
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(file).map_err(broken)?;
-    let names: Vec<String> = reader.headers().map_err(broken)?.iter().map(String::from).collect();
-    let mut columns = vec![Vec::new(); names.len()];
-    for (row, record) in reader.records().enumerate() {
-        let record = record.map_err(broken)?;
-        for ((value, column), name) in record.iter().zip(&mut columns).zip(&names) {
-            let number = value.parse().map_err(|_| TableError::NotANumber {
-                file: file.to_path_buf(),
-                row: row + 1,
-                column: name.clone(),
-                value: value.to_string(),
-            })?;
-            column.push(number);
+impl Table {
+    /// Reads a table such as `history.csv` or `history.parquet`.
+    ///
+    /// # Errors
+    /// [`TableError`] naming the file, and row and column of a value that is not a number.
+    pub fn read(file: &Path) -> Result<Self, TableError> {
+        if file.extension().is_some_and(|ending| ending == "parquet") {
+            return columns(file);
         }
+        let broken = |error: csv::Error| TableError::Unreadable {
+            file: file.to_path_buf(),
+            reason: crate::csv_text::in_words(&error),
+        };
+        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(file).map_err(broken)?;
+        let names: Vec<String> = reader.headers().map_err(broken)?.iter().map(String::from).collect();
+        let mut columns = vec![Vec::new(); names.len()];
+        for (row, record) in reader.records().enumerate() {
+            let record = record.map_err(broken)?;
+            for ((value, column), name) in record.iter().zip(&mut columns).zip(&names) {
+                let number = value.parse().map_err(|_| TableError::NotANumber {
+                    file: file.to_path_buf(),
+                    row: row + 1,
+                    column: name.clone(),
+                    value: value.to_string(),
+                })?;
+                column.push(number);
+            }
+        }
+        Ok(Self { names, columns })
     }
-    Ok(Table { names, columns })
 }
 
 #[cfg(feature = "parquet")]
@@ -104,7 +106,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("history.csv");
         std::fs::write(&file, text).unwrap();
-        read(&file).map_err(|error| error.to_string())
+        Table::read(&file).map_err(|error| error.to_string())
     }
 
     #[test]
@@ -121,6 +123,6 @@ mod tests {
     fn what_is_no_table_is_refused_with_its_place() {
         assert!(read_text("a,b\n1,2\n3,x\n").unwrap_err().contains("row 2: `x` in column `b`"));
         assert!(read_text("a,b\n1,2\n3\n").unwrap_err().contains("line"));
-        assert!(read(Path::new("no/such.csv")).is_err());
+        assert!(Table::read(Path::new("no/such.csv")).is_err());
     }
 }

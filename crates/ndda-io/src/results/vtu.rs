@@ -147,27 +147,29 @@ impl Frame {
     }
 }
 
-/// The file of a frame; `path` is what an error names.
-///
-/// # Errors
-/// [`WriteError::NotFinite`] for the first number that is not finite.
-///
-/// # Panics
-/// When an array has not one entry per node or tetrahedron.
-pub fn encode(path: &Path, topology: &Topology, frame: &Frame) -> Result<Vec<u8>, WriteError> {
-    let Topology { format, nodes, tets, cells, data } = topology;
-    let all = |values: &[Values], count| -> Result<Vec<Array>, WriteError> {
-        values.iter().map(|values| values.encoded(path, count, *format)).collect()
-    };
-    let points = frame.points.encoded(path, *nodes, *format)?;
-    let (point_data, cell_data) = (all(&frame.point_data, *nodes)?, all(&frame.cell_data, *tets)?);
-    let mut grid = Grid::new(*nodes, *tets, *format);
-    grid.open_piece();
-    grid.section("PointData", &point_data);
-    grid.section("CellData", cell_data.iter().chain(data));
-    grid.section("Points", [&points]);
-    grid.section("Cells", cells);
-    Ok(grid.finish())
+impl Frame {
+    /// The file of a frame; `path` is what an error names.
+    ///
+    /// # Errors
+    /// [`WriteError::NotFinite`] for the first number that is not finite.
+    ///
+    /// # Panics
+    /// When an array has not one entry per node or tetrahedron.
+    pub fn encode(&self, path: &Path, topology: &Topology) -> Result<Vec<u8>, WriteError> {
+        let Topology { format, nodes, tets, cells, data } = topology;
+        let all = |values: &[Values], count| -> Result<Vec<Array>, WriteError> {
+            values.iter().map(|values| values.encoded(path, count, *format)).collect()
+        };
+        let points = self.points.encoded(path, *nodes, *format)?;
+        let (point_data, cell_data) = (all(&self.point_data, *nodes)?, all(&self.cell_data, *tets)?);
+        let mut grid = Grid::new(*nodes, *tets, *format);
+        grid.open_piece();
+        grid.section("PointData", &point_data);
+        grid.section("CellData", cell_data.iter().chain(data));
+        grid.section("Points", [&points]);
+        grid.section("Cells", cells);
+        Ok(grid.finish())
+    }
 }
 
 /// The von Mises stress √(½ [(xx − yy)² + (yy − zz)² + (zz − xx)²] + 3 [xy² + yz² + zx²]) \[Pa\].
@@ -210,7 +212,7 @@ mod tests {
             frame.add_points(Values::states("friction_state", vec![2; 8]));
             frame.add_cells(Values::new("pressure_pa", pressures.iter().map(|&p| [p]), Precision::F64));
             frame.add_cells(Values::new("rough_pa", pressures.iter().map(|&p| [p]), Precision::F32));
-            let file = encode(Path::new("a.vtu"), &topology, &frame).unwrap();
+            let file = frame.encode(Path::new("a.vtu"), &topology).unwrap();
             let read = data(&file).unwrap_or_else(|_| panic!("{format:?} is not read"));
             assert_eq!(read.points[5], blocks.rest_position[5] + blocks.origin_m);
             assert_eq!((read.kinds, read.nodes), (vec![TETRA; 2], (0..8).collect()));
@@ -247,7 +249,7 @@ mod tests {
             let mut frame = Frame::new(&blocks, &blocks.rest_position);
             let velocities = (0..8).map(|i| if i == 5 { Vec3::repeat(velocity) } else { Vec3::zeros() });
             frame.add_points(Values::vectors("velocity_m_s", velocities, precision));
-            encode(Path::new("a.vtu"), &topology, &frame).unwrap_err()
+            frame.encode(Path::new("a.vtu"), &topology).unwrap_err()
         };
         for (velocity, precision) in [(f64::NAN, Precision::F64), (1e200, Precision::F32)] {
             let error = refused(velocity, precision);

@@ -6,7 +6,7 @@ use serde::Deserialize;
 
 use crate::scene::code::Code;
 use crate::scene::diagnostic::{Diagnostic, SceneErrors, line_column};
-use crate::scene::locate::{self, Node};
+use crate::scene::locate::Node;
 use crate::scene::parameters::Parameters;
 use crate::scene::parse;
 use crate::scene::units::INCLUDE as FIELD;
@@ -60,7 +60,7 @@ struct Place<'a> {
 
 impl Place<'_> {
     fn refuse(&self, code: Code, message: String, help: &str) -> SceneErrors {
-        let span = parse::place(&locate::tree(self.text), self.text, &self.path);
+        let span = parse::place(&Node::of(self.text), self.text, &self.path);
         let refused = Diagnostic::error(code, self.path.clone(), message, span).with_help(help);
         SceneErrors { file: self.file.into(), text: self.text.into(), diagnostics: vec![refused] }
     }
@@ -102,7 +102,7 @@ impl Reader<'_> {
         let file = path.display().to_string();
         let fail = |diagnostics| SceneErrors { file: file.clone(), text: text.clone(), diagnostics };
         parse::refuse_blank(&text).map_err(|(_, refused)| fail(vec![refused]))?;
-        let tree = locate::tree(&text);
+        let tree = Node::of(&text);
         let content = self.parse(&text, &tree).map_err(fail)?;
         let (first, count) = (self.scene.materials.len(), content.materials.len());
         self.scene.include.push(name.to_string_lossy().into_owned());
@@ -142,7 +142,7 @@ pub(crate) fn name_files(found: &mut Vec<Diagnostic>, included: &[Included]) {
         else {
             continue;
         };
-        let tree = locate::tree(&file.text);
+        let tree = Node::of(&file.text);
         let field = d.path.split_once(']').map_or("", |(_, field)| field);
         let list = if tree.opening == Some('[') { "" } else { "materials" };
         let path = format!("{list}[{}]{field}", i - file.first);
@@ -195,11 +195,13 @@ mod tests {
     fn a_changed_file_is_found_by_its_checksum() {
         let folder = folder(SCENE, ALL, GRANITE);
         let loaded = load(&folder.path().join("scene.ron"), &[]).unwrap();
-        let files = crate::scene::outside_files::of_scene(&loaded.scene, folder.path());
+        let files = crate::scene::outside_files::OutsideFile::all_of(&loaded.scene, folder.path());
         assert_eq!(files.len(), 2);
-        assert_eq!(crate::scene::outside_files::verify(&files, folder.path()), Ok(()));
+        assert_eq!(crate::scene::outside_files::OutsideFile::verify_all(&files, folder.path()), Ok(()));
         std::fs::write(folder.path().join("rocks/granite.ron"), GRANITE.replace("2700", "2701")).unwrap();
-        let said = crate::scene::outside_files::verify(&files, folder.path()).unwrap_err().to_string();
+        let said = crate::scene::outside_files::OutsideFile::verify_all(&files, folder.path())
+            .unwrap_err()
+            .to_string();
         assert!(said.contains("granite.ron") && said.contains("has changed"), "{said}");
     }
 

@@ -87,27 +87,31 @@ const MOST_TOLD: usize = 20;
 /// Numbers beyond it have products that overflow.
 const HUGE: f64 = 1e50;
 
-/// Reads planes.
-///
-/// # Errors
-/// [`JointTableError`] with the place of what cannot be used.
-pub fn planes(path: &Path) -> Result<Vec<PlaneRow>, JointTableError> {
-    read(path, OF_PLANES, |_| Ok(()), |plane, ()| plane)
+impl PlaneRow {
+    /// Reads planes.
+    ///
+    /// # Errors
+    /// [`JointTableError`] with the place of what cannot be used.
+    pub fn read_all(path: &Path) -> Result<Vec<Self>, JointTableError> {
+        read(path, OF_PLANES, |_| Ok(()), |plane, ()| plane)
+    }
 }
 
-/// Reads discs, in the order of the file.
-///
-/// # Errors
-/// [`JointTableError`] with the place of what cannot be used.
-pub fn discs(path: &Path) -> Result<Vec<DiscRow>, JointTableError> {
-    let advice = "a coordinate in metres, from -1e50 to 1e50";
-    let places = |row: &Row| {
-        let at = |column| row.number(column, [-HUGE, HUGE], advice);
-        let radius_m =
-            row.number("radius_m", [1.0 / HUGE, HUGE], "a length in metres, above 0 and at most 1e50")?;
-        Ok(([at("x_m")?, at("y_m")?, at("z_m")?], radius_m))
-    };
-    read(path, OF_DISCS, places, |plane, (center_m, radius_m)| DiscRow { plane, center_m, radius_m })
+impl DiscRow {
+    /// Reads discs, in the order of the file.
+    ///
+    /// # Errors
+    /// [`JointTableError`] with the place of what cannot be used.
+    pub fn read_all(path: &Path) -> Result<Vec<Self>, JointTableError> {
+        let advice = "a coordinate in metres, from -1e50 to 1e50";
+        let places = |row: &Row| {
+            let at = |column| row.number(column, [-HUGE, HUGE], advice);
+            let radius_m =
+                row.number("radius_m", [1.0 / HUGE, HUGE], "a length in metres, above 0 and at most 1e50")?;
+            Ok(([at("x_m")?, at("y_m")?, at("z_m")?], radius_m))
+        };
+        read(path, OF_DISCS, places, |plane, (center_m, radius_m)| Self { plane, center_m, radius_m })
+    }
 }
 
 /// A line of a table.
@@ -219,7 +223,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("joints.csv");
         std::fs::write(&file, text).unwrap();
-        discs(&file).map_err(|error| error.to_string())
+        DiscRow::read_all(&file).map_err(|error| error.to_string())
     }
 
     #[test]

@@ -30,16 +30,18 @@ pub struct Node {
     is_bracket_closed: bool,
 }
 
-/// Reads the shape of a text; fields that have been renamed go by their current keys.
-pub fn tree(text: &str) -> Node {
-    let mut scanner = Scanner { text, at: 0 };
-    scanner.skip_blank();
-    while scanner.rest().starts_with("#![") {
-        scanner.skip_attribute();
+impl Node {
+    /// Reads the shape of a text; fields that have been renamed go by their current keys.
+    pub fn of(text: &str) -> Self {
+        let mut scanner = Scanner { text, at: 0 };
+        scanner.skip_blank();
+        while scanner.rest().starts_with("#![") {
+            scanner.skip_attribute();
+        }
+        let mut tree = scanner.value(0).unwrap_or_default();
+        rename(&mut tree);
+        tree
     }
-    let mut tree = scanner.value(0).unwrap_or_default();
-    rename(&mut tree);
-    tree
 }
 
 /// Whether a text is one value and nothing else.
@@ -342,7 +344,7 @@ mod tests {
 )"##;
 
     fn found(path: &str) -> &'static str {
-        tree(TEXT).find(TEXT, path).map_or("nothing", |node| &TEXT[node.span.clone()])
+        Node::of(TEXT).find(TEXT, path).map_or("nothing", |node| &TEXT[node.span.clone()])
     }
 
     #[test]
@@ -359,20 +361,20 @@ mod tests {
     #[test]
     fn the_innermost_struct_around_a_byte_is_found() {
         let offset = TEXT.find("2.5").unwrap();
-        let tree = tree(TEXT);
+        let tree = Node::of(TEXT);
         assert_eq!(&TEXT[tree.innermost(offset).unwrap().span.clone()], "(1, 2.5, -3)");
     }
 
     proptest! {
         #[test]
         fn no_text_panics(text in "\\PC{0,80}", cut in 0..TEXT.len(), insert in "[(){}\\[\\]\"'/*r#:,\\\\]{0,6}") {
-            tree(&text);
+            Node::of(&text);
             let mut damaged = TEXT.to_string();
             damaged.insert_str(cut, &insert);
-            let shape = tree(&damaged);
+            let shape = Node::of(&damaged);
             shape.find(&damaged, "blocks[0].at_m[1]");
             shape.innermost(cut);
-            tree(&TEXT[..cut]);
+            Node::of(&TEXT[..cut]);
         }
     }
 }

@@ -38,29 +38,33 @@ pub enum OutsideFileError {
     },
 }
 
-/// All files that a scene names, with those that belong to them, as they are now; `folder` is that of the scene.
-pub fn of_scene(scene: &Scene, folder: &Path) -> Vec<OutsideFile> {
-    let mut paths = Vec::new();
-    for name in names(scene) {
-        add_with_companions(&mut paths, folder, PathBuf::from(name));
+impl OutsideFile {
+    /// All files that a scene names, with those that belong to them, as they are now; `folder` is that of the scene.
+    pub fn all_of(scene: &Scene, folder: &Path) -> Vec<Self> {
+        let mut paths = Vec::new();
+        for name in names(scene) {
+            add_with_companions(&mut paths, folder, PathBuf::from(name));
+        }
+        paths.into_iter().map(|path| Self { content: content(&folder.join(&path)), path }).collect()
     }
-    paths.into_iter().map(|path| OutsideFile { content: content(&folder.join(&path)), path }).collect()
 }
 
-/// Holds the files against what they are now.
-///
-/// # Errors
-/// [`OutsideFileError`] of the first that is missing or has changed.
-pub fn verify(files: &[OutsideFile], folder: &Path) -> Result<(), OutsideFileError> {
-    for file in files {
-        let path = folder.join(&file.path);
-        match (file.content, content(&path)) {
-            (was, is) if was == is => {}
-            (Some(_), None) => return Err(OutsideFileError::Missing { path }),
-            _ => return Err(OutsideFileError::Changed { path }),
+impl OutsideFile {
+    /// Holds the files against what they are now.
+    ///
+    /// # Errors
+    /// [`OutsideFileError`] of the first that is missing or has changed.
+    pub fn verify_all(files: &[Self], folder: &Path) -> Result<(), OutsideFileError> {
+        for file in files {
+            let path = folder.join(&file.path);
+            match (file.content, content(&path)) {
+                (was, is) if was == is => {}
+                (Some(_), None) => return Err(OutsideFileError::Missing { path }),
+                _ => return Err(OutsideFileError::Changed { path }),
+            }
         }
+        Ok(())
     }
-    Ok(())
 }
 
 /// Meshes, surfaces, terrain, tables of discs, records and materials.
@@ -177,17 +181,17 @@ mod tests {
     #[test]
     fn every_file_that_is_read_is_listed_once() {
         let (folder, scene) = folder();
-        let found = of_scene(&scene, folder.path());
+        let found = OutsideFile::all_of(&scene, folder.path());
         let names: Vec<String> = found.iter().map(|file| file.path.display().to_string()).collect();
         assert_eq!(names, ["a.ele", "a.node", "a.face", "b.stl", "c.geo", "part.step", "d.obj", "quake.csv"]);
         assert!(found.iter().all(|file| file.content.is_none() == (file.path == Path::new("a.face"))));
-        assert_eq!(verify(&found, folder.path()), Ok(()));
+        assert_eq!(OutsideFile::verify_all(&found, folder.path()), Ok(()));
     }
 
     #[test]
     fn each_file_that_changes_goes_or_comes_is_named() {
         let (folder, scene) = folder();
-        let found = of_scene(&scene, folder.path());
+        let found = OutsideFile::all_of(&scene, folder.path());
         for file in &found {
             let path = folder.path().join(&file.path);
             let old = std::fs::read(&path).ok();
@@ -195,16 +199,19 @@ mod tests {
             let mut other = old.clone().unwrap_or_else(|| b"new".to_vec());
             other[0] ^= 1;
             std::fs::write(&path, other).unwrap();
-            assert_eq!(verify(&found, folder.path()), Err(OutsideFileError::Changed { path: path.clone() }));
+            assert_eq!(
+                OutsideFile::verify_all(&found, folder.path()),
+                Err(OutsideFileError::Changed { path: path.clone() })
+            );
             std::fs::remove_file(&path).unwrap();
             if let Some(old) = old {
                 assert_eq!(
-                    verify(&found, folder.path()),
+                    OutsideFile::verify_all(&found, folder.path()),
                     Err(OutsideFileError::Missing { path: path.clone() })
                 );
                 std::fs::write(&path, old).unwrap();
             }
         }
-        assert_eq!(verify(&found, folder.path()), Ok(()));
+        assert_eq!(OutsideFile::verify_all(&found, folder.path()), Ok(()));
     }
 }

@@ -63,7 +63,7 @@ fn apply_one(text: &str, one: &str) -> Result<String, Diagnostic> {
         refuse(format!("`{value}` {reason}")).with_help("write one value, and --set again for the next")
     })?;
     put(text, path, value).map_err(|reason| {
-        let elsewhere = elsewhere(&locate::tree(text), text, path, value);
+        let elsewhere = elsewhere(&Node::of(text), text, path, value);
         Diagnostic { help: elsewhere, ..refuse(reason) }
     })
 }
@@ -134,7 +134,7 @@ fn is_plain(name: &str) -> bool {
 /// Why the path leads nowhere.
 pub(crate) fn put(text: &str, path: &str, value: &str) -> Result<String, String> {
     let names = current_segments(path);
-    let tree = locate::tree(text);
+    let tree = Node::of(text);
     // The longest part of the path that is there.
     let mut node = &tree;
     let mut known = 0;
@@ -164,7 +164,7 @@ pub(crate) fn put(text: &str, path: &str, value: &str) -> Result<String, String>
 
 /// Says of each message about a value that an override has put there which one it was.
 pub(crate) fn blame(found: &mut [Diagnostic], text: &str, overrides: &[String]) {
-    let tree = locate::tree(text);
+    let tree = Node::of(text);
     for diagnostic in found {
         let blamed = to_blame(diagnostic, (&tree, text), overrides);
         if blamed.is_empty() {

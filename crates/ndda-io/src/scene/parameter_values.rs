@@ -161,7 +161,7 @@ mod tests {
             ("young_pa: 20 GPa, height_m: 8", "write Gigapascal(20), or 2e10"),
         ] {
             let text = format!("(parameters: ({written}))");
-            let found = super::read(&text, &crate::scene::locate::tree(&text)).unwrap_err();
+            let found = super::read(&text, &crate::scene::locate::Node::of(&text)).unwrap_err();
             assert!(found[0].help.as_ref().unwrap().contains(said), "{found:?}");
         }
     }

@@ -7,7 +7,7 @@ use crate::scene::check;
 use crate::scene::code::Code;
 use crate::scene::diagnostic::{Diagnostic, SceneErrors, Severity};
 use crate::scene::include;
-use crate::scene::locate::{self, Node};
+use crate::scene::locate::Node;
 use crate::scene::override_files;
 use crate::scene::overrides;
 use crate::scene::parameter_values;
@@ -70,7 +70,7 @@ impl LoadedScene {
 
     /// Gives messages about the last of some texts their places in the first one, after which each has one more value inserted.
     fn move_back(&self, found: &mut [Diagnostic], texts: &[String]) {
-        let tree = locate::tree(&self.written);
+        let tree = Node::of(&self.written);
         for diagnostic in found {
             let Some(Range { mut start, mut end }) = diagnostic.span.clone() else { continue };
             for pair in texts.windows(2).rev() {
@@ -93,7 +93,7 @@ impl LoadedScene {
 
     /// A message of a kind about the value at `path`.
     pub fn diagnose_as(&self, code: Code, path: &str, message: String) -> Diagnostic {
-        Diagnostic::error(code, path, message, place(&locate::tree(&self.written), &self.written, path))
+        Diagnostic::error(code, path, message, place(&Node::of(&self.written), &self.written, path))
     }
 
     /// Messages about this scene.
@@ -151,7 +151,7 @@ pub fn load_text(
     }
     refuse_blank(text).map_err(|(text, refused)| fail(text, vec![refused]))?;
     let text = overrides::apply(text, overrides).map_err(|refused| fail(text, refused))?;
-    let tree = locate::tree(&text);
+    let tree = Node::of(&text);
     let (parameters, refused) = parameter_values::read(&text, &tree).map_err(|found| fail(&text, found))?;
     let mut scene: Scene = match parse_with(&text, &tree, &parameters) {
         Ok(scene) if refused.is_empty() => scene,

@@ -94,63 +94,67 @@ pub struct Gap {
 /// A spacing that is so many times the median is a gap.
 const GAP: f64 = 10.0;
 
-/// The longest gap between rows, if there is any.
-pub fn gap(rows: &[(f64, f64)]) -> Option<Gap> {
-    let mut spacings: Vec<(f64, f64)> =
-        rows.windows(2).map(|pair| (pair[1].0 - pair[0].0, pair[0].0)).collect();
-    spacings.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let usual_s = spacings.get(spacings.len() / 2)?.0;
-    let (length_s, from_s) = *spacings.last()?;
-    (length_s > GAP * usual_s).then_some(Gap { from_s, length_s, usual_s })
+impl Gap {
+    /// The longest gap between rows, if there is any.
+    pub fn longest_in(rows: &[(f64, f64)]) -> Option<Self> {
+        let mut spacings: Vec<(f64, f64)> =
+            rows.windows(2).map(|pair| (pair[1].0 - pair[0].0, pair[0].0)).collect();
+        spacings.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let usual_s = spacings.get(spacings.len() / 2)?.0;
+        let (length_s, from_s) = *spacings.last()?;
+        (length_s > GAP * usual_s).then_some(Self { from_s, length_s, usual_s })
+    }
 }
 
-/// Reads a record and does with it what the scene says; `folder` is that of the scene.
-///
-/// # Errors
-/// [`RecordError`] naming file and row.
-pub fn prepare(record: &Record, folder: &Path) -> Result<Prepared, RecordError> {
-    let file = folder.join(&record.file);
-    let (mut rows, named) = raw(&file, record.column.as_deref())?;
-    let unit = record.unit.or(named).unwrap_or(AccelerationUnit::MetrePerSecondSquared);
-    let factor = record.factor * unit.m_s2();
-    rows.iter_mut().for_each(|row| row.1 *= factor);
-    check_speed(&file, &rows, 1.0)?;
-    let gap = gap(&rows);
-    let (count, end_s) = (rows.len(), rows[rows.len() - 1].0);
-    let mut told = format!("{}: {count} rows to {end_s:.6} s", file.display());
-    if let Some(named) = named.filter(|named| *named != unit) {
-        told += &format!(
-            ", read in {} and not in {}, the unit that the file names",
-            unit.symbol(),
-            named.symbol()
-        );
-    }
-    let needed_s = record.filter_hz.and_then(|_| uneven(&rows));
-    if let Some(spacing_s) = record.resample_s.or(needed_s) {
-        let (given, new) = (rows.len(), ((end_s - rows[0].0) / spacing_s) as usize);
-        if new > MOST_ROWS {
-            return Err(RecordError::Spacing { file, rows: new, given });
+impl Record {
+    /// Reads a record and does with it what the scene says; `folder` is that of the scene.
+    ///
+    /// # Errors
+    /// [`RecordError`] naming file and row.
+    pub fn prepared(&self, folder: &Path) -> Result<Prepared, RecordError> {
+        let file = folder.join(&self.file);
+        let (mut rows, named) = raw(&file, self.column.as_deref())?;
+        let unit = self.unit.or(named).unwrap_or(AccelerationUnit::MetrePerSecondSquared);
+        let factor = self.factor * unit.m_s2();
+        rows.iter_mut().for_each(|row| row.1 *= factor);
+        check_speed(&file, &rows, 1.0)?;
+        let gap = Gap::longest_in(&rows);
+        let (count, end_s) = (rows.len(), rows[rows.len() - 1].0);
+        let mut told = format!("{}: {count} rows to {end_s:.6} s", file.display());
+        if let Some(named) = named.filter(|named| *named != unit) {
+            told += &format!(
+                ", read in {} and not in {}, the unit that the file names",
+                unit.symbol(),
+                named.symbol()
+            );
         }
-        rows = process::resampled(&rows, spacing_s);
-        if rows.len() < 2 {
-            return Err(RecordError::Spacing { file, rows: rows.len(), given });
+        let needed_s = self.filter_hz.and_then(|_| uneven(&rows));
+        if let Some(spacing_s) = self.resample_s.or(needed_s) {
+            let (given, new) = (rows.len(), ((end_s - rows[0].0) / spacing_s) as usize);
+            if new > MOST_ROWS {
+                return Err(RecordError::Spacing { file, rows: new, given });
+            }
+            rows = process::resampled(&rows, spacing_s);
+            if rows.len() < 2 {
+                return Err(RecordError::Spacing { file, rows: rows.len(), given });
+            }
+            told += &format!(", brought to {} rows of {spacing_s} s", rows.len());
         }
-        told += &format!(", brought to {} rows of {spacing_s} s", rows.len());
-    }
-    if let Some(corners) = record.filter_hz {
-        process::filtered(&mut rows, corners);
-        told += &format!(", filtered from {} to {} Hz", corners.0, corners.1);
-        if corners.1 >= 0.5 / (rows[1].0 - rows[0].0) {
-            told += " (the upper corner is beyond what the rows hold, and has no effect)";
+        if let Some(corners) = self.filter_hz {
+            process::filtered(&mut rows, corners);
+            told += &format!(", filtered from {} to {} Hz", corners.0, corners.1);
+            if corners.1 >= 0.5 / (rows[1].0 - rows[0].0) {
+                told += " (the upper corner is beyond what the rows hold, and has no effect)";
+            }
         }
+        if self.baseline != Baseline::None {
+            let (c1, c2) = process::corrected(&mut rows, self.baseline);
+            told += &format!(", less a velocity of {c1:.4e} m/s² t + {c2:.4e} m/s³ t²");
+        }
+        let peak = rows.iter().map(|row| row.1.abs()).fold(0.0, f64::max);
+        told += &format!("; peak {peak:.4} m/s²");
+        Ok(Prepared { rows, told, gap })
     }
-    if record.baseline != Baseline::None {
-        let (c1, c2) = process::corrected(&mut rows, record.baseline);
-        told += &format!(", less a velocity of {c1:.4e} m/s² t + {c2:.4e} m/s³ t²");
-    }
-    let peak = rows.iter().map(|row| row.1.abs()).fold(0.0, f64::max);
-    told += &format!("; peak {peak:.4} m/s²");
-    Ok(Prepared { rows, told, gap })
 }
 
 /// The shortest spacing of rows [s]; none where all are even, to the digits that files have.
@@ -266,15 +270,15 @@ mod tests {
     fn a_gap_between_even_rows_is_found_and_uneven_rows_are_none() {
         let even = |count: i32| (0..count).map(|i| (f64::from(i) * 0.01, 0.0));
         let rows: Vec<_> = even(10).chain([(0.5, 0.0), (0.51, 0.0)]).collect();
-        let Gap { from_s, length_s, usual_s } = gap(&rows).unwrap();
+        let Gap { from_s, length_s, usual_s } = Gap::longest_in(&rows).unwrap();
         assert!(
             (from_s - 0.09).abs() < 1e-12
                 && (length_s - 0.41).abs() < 1e-12
                 && (usual_s - 0.01).abs() < 1e-12
         );
-        assert_eq!(gap(&[(0.0, 0.0), (1.0, 1.0), (4.0, 0.0), (4.5, 1.0)]), None);
-        assert_eq!(gap(&even(10).collect::<Vec<_>>()), None);
-        assert_eq!(gap(&[(0.0, 1.0)]), None);
+        assert_eq!(Gap::longest_in(&[(0.0, 0.0), (1.0, 1.0), (4.0, 0.0), (4.5, 1.0)]), None);
+        assert_eq!(Gap::longest_in(&even(10).collect::<Vec<_>>()), None);
+        assert_eq!(Gap::longest_in(&[(0.0, 1.0)]), None);
     }
 
     #[test]

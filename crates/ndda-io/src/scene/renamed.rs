@@ -37,7 +37,6 @@ fn warning(path: &str, old: &str, new: &str) -> Diagnostic {
 mod tests {
     use super::*;
     use crate::scene::Contact;
-    use crate::scene::locate;
     use crate::scene::read::load_text;
 
     fn scene(key: &str, entry: &str) -> String {
@@ -94,7 +93,7 @@ mod tests {
     #[test]
     fn a_field_of_another_struct_keeps_its_key() {
         let text = "(rock: [(joints: [])], contact: Off, joints: 1)";
-        let tree = locate::tree(text);
+        let tree = Node::of(text);
         assert_eq!(warnings(text, &tree, &[]), []);
         assert_eq!(current_segments("rock[0].joints[1].dip_deg"), ["rock", "0", "joints", "1", "dip_deg"]);
     }

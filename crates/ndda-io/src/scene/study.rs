@@ -12,12 +12,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::scene::code::Code;
 use crate::scene::diagnostic::{Diagnostic, SceneErrors};
+use crate::scene::locate::{self, Node};
+use crate::scene::parse;
 use crate::scene::read::{self, LoadedScene};
-use crate::scene::{locate, parse};
 
 use check::{default_curves, lost_paths, problems};
 pub use distribution::Distribution;
-pub use vary::vary;
 
 /// A study, as it is written.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -298,44 +298,46 @@ impl LoadedStudy {
     }
 }
 
-/// Reads and checks a study file and the scene that it names.
-///
-/// # Errors
-/// Everything that is wrong with it: syntax and types one at a time, values all at once.
-pub fn load(path: &Path) -> Result<LoadedStudy, SceneErrors> {
-    let text = read::text_of(path)?;
-    let fail = |text: &str, diagnostics| SceneErrors {
-        file: path.display().to_string(),
-        text: text.to_string(),
-        diagnostics,
-    };
-    parse::refuse_blank(&text).map_err(|(text, refused)| fail(text, vec![refused]))?;
-    let tree = locate::tree(&text);
-    let study: Study = parse::parse(&text, &tree).map_err(|found| fail(&text, found))?;
-    let scene = path.parent().unwrap_or(Path::new(".")).join(&study.scene);
-    let mut found = problems(&study);
-    let scene_text = match read::text_of(&scene) {
-        Ok(scene_text) => {
-            found.extend(lost_paths(&study, &scene_text));
-            scene_text
+impl LoadedStudy {
+    /// Reads and checks a study file and the scene that it names.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it: syntax and types one at a time, values all at once.
+    pub fn load(path: &Path) -> Result<Self, SceneErrors> {
+        let text = read::text_of(path)?;
+        let fail = |text: &str, diagnostics| SceneErrors {
+            file: path.display().to_string(),
+            text: text.to_string(),
+            diagnostics,
+        };
+        parse::refuse_blank(&text).map_err(|(text, refused)| fail(text, vec![refused]))?;
+        let tree = Node::of(&text);
+        let study: Study = parse::parse(&text, &tree).map_err(|found| fail(&text, found))?;
+        let scene = path.parent().unwrap_or(Path::new(".")).join(&study.scene);
+        let mut found = problems(&study);
+        let scene_text = match read::text_of(&scene) {
+            Ok(scene_text) => {
+                found.extend(lost_paths(&study, &scene_text));
+                scene_text
+            }
+            Err(errors) => {
+                let said = errors.diagnostics.first().map_or(String::new(), |d| d.message.clone());
+                found.push(Diagnostic::error(
+                    Code::MissingFile,
+                    "scene",
+                    format!("{} {said}", scene.display()),
+                    None,
+                ));
+                String::new()
+            }
+        };
+        parse::locate_all(&mut found, &text, &tree);
+        if !found.is_empty() {
+            return Err(fail(&text, found));
         }
-        Err(errors) => {
-            let said = errors.diagnostics.first().map_or(String::new(), |d| d.message.clone());
-            found.push(Diagnostic::error(
-                Code::MissingFile,
-                "scene",
-                format!("{} {said}", scene.display()),
-                None,
-            ));
-            String::new()
-        }
-    };
-    parse::locate_all(&mut found, &text, &tree);
-    if !found.is_empty() {
-        return Err(fail(&text, found));
+        let curves = study.curves.clone().unwrap_or_else(|| default_curves(&study));
+        Ok(LoadedStudy { study, curves, scene, scene_text })
     }
-    let curves = study.curves.clone().unwrap_or_else(|| default_curves(&study));
-    Ok(LoadedStudy { study, curves, scene, scene_text })
 }
 
 #[cfg(test)]
@@ -349,7 +351,7 @@ mod tests {
         std::fs::write(folder.path().join("scene.ron"), SCENE).unwrap();
         let file = folder.path().join("study.ron");
         std::fs::write(&file, text).unwrap();
-        load(&file).map_err(|errors| errors.render(false))
+        LoadedStudy::load(&file).map_err(|errors| errors.render(false))
     }
 
     const STUDY: &str = "(title: \"s\", scene: \"scene.ron\",

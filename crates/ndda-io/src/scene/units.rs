@@ -15,7 +15,8 @@ use crate::scene::locate::Node;
 use crate::scene::parameters::{self, Parameters, number};
 use crate::scene::suggest::nearest;
 
-pub use dimensions::{DIMENSIONS, Dimension, Unit, dimension_of};
+pub use dimensions::DIMENSIONS;
+pub(crate) use dimensions::{Dimension, Unit, dimension_of};
 pub(crate) use symbols::{NOT_BEHIND, advice, may_be_unit};
 
 /// A choice whose value is a place [m], though its name does not end in it.
@@ -265,10 +266,9 @@ fn units_of(dimension: &Dimension) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::locate;
 
     fn resolved(text: &str) -> Resolved {
-        resolve(text, &locate::tree(text), &Parameters::default())
+        resolve(text, &Node::of(text), &Parameters::default())
     }
 
     fn number(field: &str, value: &str) -> f64 {

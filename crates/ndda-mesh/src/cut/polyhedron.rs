@@ -1,7 +1,7 @@
 //! A convex block by its vertices and faces.
 
 use crate::Vec3;
-use crate::geometry::Aabb;
+use crate::geometry::{Aabb, reach_below};
 
 /// Surface of faces of a box that planes are still to cut.
 const NO_SURFACE: u32 = u32::MAX;
@@ -94,9 +94,8 @@ impl Polyhedron {
     /// Smallest extent over the directions of the faces [m]: the thickness of a slab, plate or wedge.
     pub fn width_m(&self) -> f64 {
         let depth = |face: &Face| {
-            let inward = -self.area_vector(face).normalize();
             let first = self.vertices[face.vertices[0] as usize];
-            self.vertices.iter().map(|x| inward.dot(&(x - first))).fold(0.0, f64::max)
+            reach_below(&self.area_vector(face).normalize(), &first, &self.vertices)
         };
         self.faces.iter().map(depth).fold(f64::INFINITY, f64::min)
     }

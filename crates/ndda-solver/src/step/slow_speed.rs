@@ -1,5 +1,6 @@
 //! The speed below which blocks hardly move.
 
+use ndda_mesh::geometry::reach_below;
 use ndda_mesh::{BlockId, BlockSet, TriangleId};
 
 use crate::bodies::kind::BodyKind;
@@ -40,9 +41,8 @@ fn convex_width_m(blocks: &BlockSet, block: BlockId) -> Option<f64> {
     for triangle in triangles {
         let [a, b, c] = blocks.triangle_corners(TriangleId(triangle as u32), &blocks.rest_position);
         let normal = (b - a).cross(&(c - a)).try_normalize(0.0)?;
-        let depths_m = || nodes.iter().map(|x| normal.dot(&(a - x)));
-        let reach_m = depths_m().fold(0.0, f64::max);
-        if depths_m().any(|depth_m| depth_m < -1e-9 * reach_m) {
+        let reach_m = reach_below(&normal, &a, nodes);
+        if reach_below(&-normal, &a, nodes) > 1e-9 * reach_m {
             return None;
         }
         width_m = width_m.min(reach_m);

@@ -256,7 +256,7 @@ fn node_supports(
         }
         (Hold::Shaking(components), _) => {
             let part = |component: &scene::Component| {
-                let prepared = record::prepare(&component.record, folder).map_err(|e| e.to_string())?;
+                let prepared = component.record.prepared(folder).map_err(|e| e.to_string())?;
                 let direction = vec3(component.direction).normalize();
                 Ok(Motion::Record(Record::new(direction, &prepared.rows)))
             };

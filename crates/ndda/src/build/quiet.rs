@@ -169,7 +169,7 @@ fn arriving(
             height.abs()
         ));
     }
-    let prepared = record::prepare(&wave.record, folder).map_err(|error| error.to_string())?;
+    let prepared = wave.record.prepared(folder).map_err(|error| error.to_string())?;
     let (rows, share) = match (wave.motion, ground) {
         (RecordedAs::Outcrop, _) => (prepared.rows, 0.5),
         (RecordedAs::Within, Some(height)) => (without_echo(&prepared.rows, 2.0 * height / c), 1.0),
@@ -206,7 +206,7 @@ pub fn records(scene: &Scene, folder: &Path) -> Vec<String> {
     });
     let mut told: Vec<String> = Vec::new();
     for record in waves.chain(shaking.flatten()) {
-        if let Ok(prepared) = record::prepare(record, folder)
+        if let Ok(prepared) = record.prepared(folder)
             && !told.contains(&prepared.told)
         {
             told.push(prepared.told);

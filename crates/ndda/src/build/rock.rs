@@ -5,7 +5,7 @@ mod joints;
 use std::fmt;
 use std::path::Path;
 
-use ndda_io::mesh::terrain_grid::{self, TerrainGrid};
+use ndda_io::mesh::terrain_grid::TerrainGrid;
 use ndda_io::scene::{self, Contact, Fill, Potential, Rock, Scene, Slivers, Whereabouts};
 use ndda_mesh::cut::{
     Axis, Blocks, CutOptions, Domain, Merged, VoronoiOptions, cut_blocks, random_seeds, voronoi_blocks,
@@ -311,7 +311,7 @@ fn domain(domain: &scene::Domain, folder: &Path) -> Result<Domain, String> {
             terrain(&TerrainGrid { origin_m: *origin_m, step_m: *step_m, heights_m }, *base_m)
         }
         scene::Domain::TerrainFile { file, origin_m, base_m } => {
-            let mut grid = terrain_grid::read(&folder.join(file)).map_err(|e| e.to_string())?;
+            let mut grid = TerrainGrid::read(&folder.join(file), None).map_err(|e| e.to_string())?;
             grid.origin_m = [grid.origin_m[0] - origin_m[0], grid.origin_m[1] - origin_m[1]];
             terrain(&grid, *base_m)
         }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use ndda_io::scene::{self, Grading};
-use ndda_io::surface_file::{self, Surface};
+use ndda_io::surface_file::Surface;
 use ndda_mesh::BlockMesh;
 use ndda_mesh::cut::{Blocks, Domain, DomainFace, cut_blocks};
 use ndda_mesh::tetrahedralise::{self, Fill, Towards};
@@ -28,7 +28,7 @@ pub(super) fn of_corners(corners_m: &[[f64; 3]], faces: &[Vec<u32>]) -> Surface 
 
 /// A surface in a file, in metres.
 pub(super) fn of_file(path: &Path, unit_m: f64) -> Result<Surface, String> {
-    let mut surface = surface_file::read(path, ROUNDED).map_err(|e| e.to_string())?;
+    let mut surface = Surface::read(path, ROUNDED).map_err(|e| e.to_string())?;
     surface.vertices.iter_mut().for_each(|x| *x *= unit_m);
     Ok(surface)
 }

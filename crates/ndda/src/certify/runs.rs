@@ -2,7 +2,7 @@
 
 use ndda_io::scene::Step;
 use ndda_io::summary::{LabelWord, Summary};
-use ndda_io::table::{self, Table};
+use ndda_io::table::Table;
 
 use super::certificate::{self, Basis, Certificate, Certified, ClosedForm, Histories, RunRecord, SCHEMA};
 use super::chaos::{self, Chaos};
@@ -174,8 +174,8 @@ pub fn read(launch: &Launch, case: &Case) -> Result<Ended, CertifyError> {
         Some(RunOutcome::Failed { reason, .. }) => return Err(failed(reason)),
         None => return Err(failed("it has not run".into())),
     };
-    let file = folder(launch.out, &case.name).join(RESULTS).join(ndda_io::folder::HISTORY);
-    let history = table::read(&file).map_err(StudyError::from)?;
+    let file = folder(launch.out, &case.name).join(RESULTS).join(ndda_io::OutputFolder::HISTORY);
+    let history = Table::read(&file).map_err(StudyError::from)?;
     let summary = serde_json::from_value(summary).map_err(|e| failed(e.to_string()))?;
     Ok(Ended { summary, history })
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use ndda_io::checkpoint::{self, CheckpointError};
 use ndda_io::diagnostic::SceneErrors;
-use ndda_io::outside_files::{self, OutsideFileError};
+use ndda_io::outside_files::{OutsideFile, OutsideFileError};
 use ndda_io::{WriteError, read};
 use ndda_solver::{RestoreError, Snapshot, StepError};
 use serde::{Deserialize, Serialize};
@@ -101,7 +101,7 @@ impl Driver {
             (saved.origin, saved.identity, saved.snapshot)
         };
         let folder = identity.folder();
-        outside_files::verify(&identity.outside, folder)?;
+        OutsideFile::verify_all(&identity.outside, folder)?;
         let file = identity.file.display().to_string();
         let loaded = read::load_text(&file, &identity.text, &[], Some(folder))?;
         let mut model = Model::resuming_with(loaded, folder, choices(parts.as_ref()))?;

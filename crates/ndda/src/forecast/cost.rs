@@ -4,7 +4,7 @@ use std::fmt;
 use std::time::{Duration, Instant};
 
 use ndda_io::scene::Scene;
-use ndda_io::{OutputFolder, checkpoint, folder};
+use ndda_io::{OutputFolder, checkpoint};
 use ndda_solver::{Simulation, SinkError};
 use serde::Serialize;
 
@@ -44,7 +44,9 @@ impl FileGuess {
     fn several(&self) -> String {
         match self.count {
             0..2 => String::new(),
-            count if self.name == folder::CHECKPOINT => format!(" ({count}: the last and the one before)"),
+            count if self.name == OutputFolder::CHECKPOINT => {
+                format!(" ({count}: the last and the one before)")
+            }
             count => format!(" ({count} frames)"),
         }
     }
@@ -149,22 +151,22 @@ fn files(scene: &Scene, simulation: &Simulation, (rows, frames): (u64, u64), fra
     let saved = checkpoint::size(&simulation.snapshot_view()) + checkpoint::size(scene);
     let blocks = simulation.blocks().len() as u64;
     let mut files = vec![
-        file(folder::HISTORY, 1, rows * columns * NUMBER_BYTES),
-        file(folder::CHECKPOINT, 2, 2 * saved),
-        file(folder::SUMMARY, 1, 3000 + 600 * blocks),
-        file(folder::LOG, 1, 4000 + 100 * blocks),
+        file(OutputFolder::HISTORY, 1, rows * columns * NUMBER_BYTES),
+        file(OutputFolder::CHECKPOINT, 2, 2 * saved),
+        file(OutputFolder::SUMMARY, 1, 3000 + 600 * blocks),
+        file(OutputFolder::LOG, 1, 4000 + 100 * blocks),
     ];
     if frames > 0 {
-        files.push(file(&format!("{}/*.vtu", folder::FIELDS_FOLDER), frames, frames * frame));
+        files.push(file(&format!("{}/*.vtu", OutputFolder::FIELDS_FOLDER), frames, frames * frame));
     }
     if output.blocks {
         let rows = blocks * events(build::all_steps(scene), output.frames.into());
-        files.push(file(folder::BLOCKS, 1, rows * motion::COLUMNS.len() as u64 * NUMBER_BYTES));
+        files.push(file(OutputFolder::BLOCKS, 1, rows * motion::COLUMNS.len() as u64 * NUMBER_BYTES));
     }
     let pieces = bolt_pieces(simulation);
     if pieces > 0 {
         let rows = pieces * events(build::all_steps(scene), output.frames.into());
-        files.push(file(folder::BOLTS, 1, rows * bolts::COLUMNS.len() as u64 * NUMBER_BYTES));
+        files.push(file(OutputFolder::BOLTS, 1, rows * bolts::COLUMNS.len() as u64 * NUMBER_BYTES));
     }
     for stage in &scene.stages {
         files.push(file(&OutputFolder::stage_checkpoint_name(&stage.name), 1, saved));
@@ -172,7 +174,7 @@ fn files(scene: &Scene, simulation: &Simulation, (rows, frames): (u64, u64), fra
     if output.contacts {
         let pairs = ndda_contact::resultants(simulation.blocks(), &mut simulation.contacts().to_vec()).len();
         let numbers = (pairs * contact_rows::COLUMNS.len()) as u64;
-        files.push(file(folder::CONTACTS, 1, rows * numbers * NUMBER_BYTES));
+        files.push(file(OutputFolder::CONTACTS, 1, rows * numbers * NUMBER_BYTES));
     }
     files
 }

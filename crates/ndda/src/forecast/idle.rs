@@ -103,7 +103,7 @@ type Known = (String, Vec<(f64, f64)>, Option<Gap>);
 /// All records of a scene that can be read.
 fn rows(scene: &Scene, folder: &Path) -> Vec<Known> {
     let prepared = |record: &Record| {
-        let prepared = record::prepare(record, folder).ok()?;
+        let prepared = record.prepared(folder).ok()?;
         Some((record.file.clone(), prepared.rows, prepared.gap))
     };
     let waves = scene.quiet.iter().flat_map(|quiet| &quiet.incident).map(|wave| prepared(&wave.record));
@@ -115,7 +115,7 @@ fn rows(scene: &Scene, folder: &Path) -> Vec<Known> {
             }
             Hold::Acceleration { file, .. } => {
                 all.extend(record::read(&folder.join(file)).ok().map(|rows| {
-                    let gap = record::gap(&rows);
+                    let gap = Gap::longest_in(&rows);
                     (file.clone(), rows, gap)
                 }));
             }

@@ -6,7 +6,7 @@ use ndda_solver::shown_time_s;
 use super::reasons;
 use super::words::{SECOND_RUN, in_words};
 use crate::columns::columns;
-use crate::numbers::counted;
+use crate::numbers::{SHORTEST_M, counted, length};
 
 /// Most blocks in a table.
 const MOST_BLOCKS: usize = 1000;
@@ -155,31 +155,6 @@ pub fn moved(motion: &Motion) -> String {
 /// A speed in m/s, or in a smaller unit if it is below a centimetre in a second.
 fn speed(speed_m_s: f64) -> String {
     if speed_m_s >= 0.01 { format!("{speed_m_s:.3} m/s") } else { format!("{}/s", length(speed_m_s)) }
-}
-
-/// Shorter lengths \[m\] have no figure left in micrometres, and are most often rounding.
-const SHORTEST_M: f64 = 1e-9;
-
-/// A length in a unit that suits it.
-pub fn length(length_m: f64) -> String {
-    match length_m {
-        l if l >= 1.0 => format!("{} m", figures(l)),
-        l if l >= 1e-3 => format!("{} mm", figures(1e3 * l)),
-        l if l >= SHORTEST_M => format!("{} µm", figures(1e6 * l)),
-        0.0 => "0 m".into(),
-        l => format!("{l:.1e} m"),
-    }
-}
-
-/// A number in three figures, or all those before the point.
-fn figures(value: f64) -> String {
-    let decimals = match value.abs() {
-        v if v >= 100.0 => 0,
-        v if v >= 10.0 => 1,
-        v if v >= 1.0 => 2,
-        _ => 3,
-    };
-    format!("{value:.decimals$}")
 }
 
 /// The error against the closed form that the scene names, if it names one.

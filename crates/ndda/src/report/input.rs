@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use ndda_io::folder::{BOLTS, CHECKPOINT, FIELDS_INDEX, HISTORY, SUMMARY};
-use ndda_io::results::{self, BoltForces, ListedFrame, Table};
+use ndda_io::OutputFolder;
+use ndda_io::results::{BoltForces, ListedFrame, ResultsError, Table};
 use ndda_io::summary::Summary;
 
 use super::error::ReportError;
@@ -37,9 +37,9 @@ pub fn run_folder(folder: &Path) -> PathBuf {
         Some(record::folder(folder, &finest.name).join(record::RESULTS))
     };
     let mechanism = folder.join(places::MECHANISM);
-    if folder.join(SUMMARY).is_file() {
+    if folder.join(OutputFolder::SUMMARY).is_file() {
         folder.to_path_buf()
-    } else if folder.join(places::SAFETY).is_file() && mechanism.join(SUMMARY).is_file() {
+    } else if folder.join(places::SAFETY).is_file() && mechanism.join(OutputFolder::SUMMARY).is_file() {
         mechanism
     } else {
         of_certificate().unwrap_or_else(|| folder.to_path_buf())
@@ -58,23 +58,23 @@ impl Input {
         let certificate = Certificate::read(folder);
         let folder = &run_folder(folder);
         let has = |name: &str| folder.join(name).is_file();
-        let history = results::history_file(folder);
-        if !has(SUMMARY) && history.is_none() && !has(CHECKPOINT) {
+        let history = OutputFolder::history_in(folder);
+        if !has(OutputFolder::SUMMARY) && history.is_none() && !has(OutputFolder::CHECKPOINT) {
             return Err(ReportError::NotARun(folder.to_path_buf(), places::instead(folder)));
         }
         let incomplete = |missing| ReportError::Incomplete { folder: folder.to_path_buf(), missing };
-        if !has(SUMMARY) {
-            return Err(incomplete(SUMMARY));
+        if !has(OutputFolder::SUMMARY) {
+            return Err(incomplete(OutputFolder::SUMMARY));
         }
-        let history = history.ok_or_else(|| incomplete(HISTORY))?;
-        let index = folder.join(FIELDS_INDEX);
+        let history = history.ok_or_else(|| incomplete(OutputFolder::HISTORY))?;
+        let index = folder.join(OutputFolder::FIELDS_INDEX);
         Ok(Self {
-            summary: results::summary(&folder.join(SUMMARY))?,
-            history: results::history(&history)?,
-            frames: if index.is_file() { results::frame_list(&index)? } else { Vec::new() },
+            summary: Summary::read(&folder.join(OutputFolder::SUMMARY))?,
+            history: Table::read(&history).map_err(ResultsError::from)?,
+            frames: if index.is_file() { ListedFrame::read_all(&index)? } else { Vec::new() },
             bolt_frames: bolts::listed(folder)?,
-            bolt_forces: if has(BOLTS) {
-                results::bolt_forces(&folder.join(BOLTS))?
+            bolt_forces: if has(OutputFolder::BOLTS) {
+                BoltForces::read(&folder.join(OutputFolder::BOLTS))?
             } else {
                 BoltForces::default()
             },

@@ -1,6 +1,6 @@
 //! The frames of a run, as far as a page shows them.
 
-use ndda_io::results::{self, ListedFrame};
+use ndda_io::results::{FieldFrame, ListedFrame};
 use ndda_mesh::Vec3;
 use ndda_mesh::geometry::Aabb;
 use serde::Serialize;
@@ -85,7 +85,7 @@ impl Motion {
         bolt_frames: &[ListedFrame],
         most: Option<usize>,
     ) -> Result<Self, ReportError> {
-        let first = results::frame(&listed[0].path)?;
+        let first = FieldFrame::read(&listed[0].path)?;
         let surface = Surface::new(&first);
         let fields = fields(&first);
         let entries: usize = fields.iter().map(|f| entries(f.place, &surface)).sum();
@@ -97,7 +97,7 @@ impl Motion {
         let (mut extent, mut times_s, mut absent) = (Aabb::empty(), Vec::new(), Vec::new());
         for index in shown {
             let ListedFrame { time_s, path } = &listed[index];
-            let frame = results::frame(path)?;
+            let frame = FieldFrame::read(path)?;
             same_blocks(path, &first, &frame, &fields)?;
             let now: Vec<Vec3> = surface.nodes.iter().map(|&n| frame.points[n as usize]).collect();
             now.iter().for_each(|x| extent.grow(x));

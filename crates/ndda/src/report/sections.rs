@@ -6,7 +6,7 @@ use ndda_io::summary::{BlockEnd, Judgement, LabelWord, StageEnd, Status, Summary
 use crate::frames::STILL;
 use crate::judge::table;
 use crate::judge::words::in_words;
-use crate::numbers::counted;
+use crate::numbers::{counted, length};
 
 /// Blocks that are listed beside the picture.
 const MOST_FARTHEST: usize = 8;
@@ -98,7 +98,7 @@ pub fn farthest(summary: &Summary) -> Markup {
                         @for (name, end) in first {
                             tr {
                                 td { (name) }
-                                td.number { (table::length(end.motion.farthest_m)) }
+                                td.number { (length(end.motion.farthest_m)) }
                                 td.number { (format!("{:.2}°", end.motion.rotation_deg)) }
                             }
                         }
@@ -299,8 +299,8 @@ pub fn blocks(summary: &Summary) -> Markup {
                             tr {
                                 td { (name) }
                                 td.number { (triple(&end.motion.displacement_m)) }
-                                td.number { (table::length(end.motion.farthest_m)) }
-                                td.number { (table::length(end.motion.largest_m)) }
+                                td.number { (length(end.motion.farthest_m)) }
+                                td.number { (length(end.motion.largest_m)) }
                                 td.number { (format!("{:.2}°", end.motion.rotation_deg)) }
                                 td.number { (triple(&end.velocity)) }
                                 td.number { (number(end.mass)) }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use ndda_io::mesh::terrain_grid::{self, TerrainGrid};
+use ndda_io::mesh::terrain_grid::TerrainGrid;
 use ndda_io::scene::{Ground, Rockfall};
 
 /// Classes on a grid; cells without a class have none.
@@ -30,7 +30,7 @@ impl Classes {
     pub fn of(rockfall: &Rockfall, folder: &Path) -> Result<Option<Self>, Refused> {
         let Some(file) = &rockfall.class_grid else { return Ok(None) };
         let read = |file: &str| {
-            let grid = terrain_grid::read(&folder.join(file)).map_err(|error| error.to_string())?;
+            let grid = TerrainGrid::read(&folder.join(file), None).map_err(|error| error.to_string())?;
             Self::new(grid, &rockfall.terrain).map_err(|problem| format!("{file}: {problem}"))
         };
         let classes = read(file).map_err(|problem| ("rockfall.class_grid".to_string(), problem))?;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use ndda_io::mesh::terrain_grid::{self, TerrainGrid};
+use ndda_io::mesh::terrain_grid::TerrainGrid;
 use ndda_io::scene::{Ground, Zone};
 use ndda_mesh::Vec3;
 
@@ -46,7 +46,7 @@ impl Terrain {
     ) -> Result<Self, String> {
         let grid = match ground {
             Ground::File { file, origin_m, sample_m } => {
-                let read = terrain_grid::read_sampled(&folder.join(file), *sample_m);
+                let read = TerrainGrid::read(&folder.join(file), *sample_m);
                 let mut grid = read.map_err(|error| error.to_string())?;
                 grid.origin_m = [0, 1].map(|i| grid.origin_m[i] - origin_m[i]);
                 let terrain = Self::of_grid(&grid, zones, classes);

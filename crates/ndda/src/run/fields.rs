@@ -87,7 +87,7 @@ impl FieldWriter {
         let mut stress_pa = room_for_stress(fields, simulation.blocks());
         let frame = frame(fields, precision, simulation, &mut stress_pa)?;
         let topology = topology(scene, simulation.blocks());
-        Ok(ndda_io::vtu::encode("frame.vtu".as_ref(), &topology, &frame)?)
+        Ok(frame.encode("frame.vtu".as_ref(), &topology)?)
     }
 }
 
@@ -255,7 +255,7 @@ mod tests {
             let topology = topology(&scene, model.simulation.blocks());
             let frame =
                 frame(&scene.output.fields, scene.output.precision, &mut model.simulation, &mut []).unwrap();
-            let bytes = ndda_io::vtu::encode(std::path::Path::new("a.vtu"), &topology, &frame).unwrap();
+            let bytes = frame.encode(std::path::Path::new("a.vtu"), &topology).unwrap();
             String::from_utf8_lossy(&bytes).contains("block_id")
         };
         assert!(!numbers("") && numbers(r#"stages: [(name: "next", then: Run(1e-3))],"#));

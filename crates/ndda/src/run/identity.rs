@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use ndda_io::checkpoint;
-use ndda_io::outside_files::{self, OutsideFile};
+use ndda_io::outside_files::OutsideFile;
 use ndda_io::scene::Scene;
 use serde::{Deserialize, Serialize};
 
@@ -23,7 +23,7 @@ pub struct Identity {
 impl Identity {
     /// Of a scene that is read from `file`, by its text and the files that it names.
     pub fn new(name: String, text: String, file: PathBuf, scene: &Scene) -> Self {
-        let outside = outside_files::of_scene(scene, folder_of(&file));
+        let outside = OutsideFile::all_of(scene, folder_of(&file));
         Self { name, text, file, outside }
     }
 

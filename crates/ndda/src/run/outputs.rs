@@ -243,7 +243,7 @@ impl<'a, 'b> Outputs<'a, 'b> {
             },
             settling: None::<Settling>,
         };
-        checkpoint::write(&files.folder, &saved)?;
+        files.folder.write_checkpoint(&saved)?;
         if let Some(stage) = stage {
             checkpoint::write_file(&files.folder.stage_checkpoint(stage), &saved)?;
         }

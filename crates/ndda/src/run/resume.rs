@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use ndda_io::diagnostic::SceneErrors;
-use ndda_io::{OutputFolder, WriteError, checkpoint, outside_files, read};
+use ndda_io::outside_files::OutsideFile;
+use ndda_io::{OutputFolder, WriteError, read};
 use ndda_ranks::RanksError;
 use ndda_solver::Snapshot;
 
@@ -86,7 +87,7 @@ impl Run {
     ) -> Result<Self, ResumeError> {
         let beside = saved.identity.folder().to_path_buf();
         let meshes = beside.as_path();
-        outside_files::verify(&saved.identity.outside, meshes)
+        OutsideFile::verify_all(&saved.identity.outside, meshes)
             .map_err(|error| ResumeError::Unusable(error.to_string()))?;
         let name = saved.identity.file.display().to_string();
         let loaded = read::load_text(&name, &saved.identity.text, &[], Some(meshes))?;
@@ -151,10 +152,10 @@ pub(super) fn last_checkpoint(
         _ => Ok(()),
     };
     let (saved, passed_over) =
-        checkpoint::read(folder, of_this_run).map_err(|error| ResumeError::Unusable(error.to_string()))?;
+        folder.read_checkpoint(of_this_run).map_err(|error| ResumeError::Unusable(error.to_string()))?;
     if let Some(error) = passed_over {
         warnings.push(format!("{error}; going on from the checkpoint before"));
-        checkpoint::go_back(folder)?;
+        folder.go_back()?;
     }
     Ok(saved)
 }

@@ -77,7 +77,7 @@ impl Run {
         let earlier = Earlier { wall_s: self.started.elapsed().as_secs_f64(), ..Earlier::default() };
         let snapshot = self.model.simulation.snapshot_view();
         let saved = SavedRun { identity: identity.clone(), snapshot, earlier, settling: Some(settling) };
-        checkpoint::write(folder, &saved)
+        folder.write_checkpoint(&saved)
     }
 
     /// Summary, history and frames of a run that ends before its scene has come to rest: how it was at the start, and how it is now. Their

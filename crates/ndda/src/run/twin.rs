@@ -13,9 +13,8 @@ use ndda_mesh::{BlockId, TetId, Vec3};
 use ndda_solver::{BodyKind, Settle, Simulation, StartSnapshot, StepError};
 
 use super::unless_ended;
-use crate::judge::table::length;
 use crate::judge::words::SECOND_RUN;
-use crate::numbers::counted;
+use crate::numbers::{counted, length};
 
 /// Whether a twin of the run is run after it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -2,9 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use ndda_io::record::{Prepared, prepare};
+use ndda_io::OutputFolder;
+use ndda_io::record::Prepared;
+use ndda_io::results::Table;
 use ndda_io::scene::{AccelerationUnit, Baseline, Record};
-use ndda_io::{folder, results, table};
 
 use super::ShakingError;
 
@@ -53,13 +54,13 @@ pub(super) fn read(record: &Record) -> Result<Prepared, ShakingError> {
     let path = Path::new(&record.file);
     let asks_for_history = record.column.as_ref().is_some_and(|column| column.contains(VELOCITY));
     if !path.is_dir() && !asks_for_history {
-        return Ok(prepare(record, Path::new(""))?);
+        return Ok(record.prepared(Path::new(""))?);
     }
     let file = match path.is_dir() {
-        true => results::history_file(path).unwrap_or_else(|| path.join(folder::HISTORY)),
+        true => OutputFolder::history_in(path).unwrap_or_else(|| path.join(OutputFolder::HISTORY)),
         false => path.to_path_buf(),
     };
-    let table = table::read(&file)?;
+    let table = Table::read(&file)?;
     let known = || -> String {
         let names: Vec<&str> =
             table.names.iter().filter(|name| name.contains(VELOCITY)).map(String::as_str).collect();

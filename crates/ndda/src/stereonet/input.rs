@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use ndda_io::joint_table::{self, PlaneRow};
+use ndda_io::joint_table::{DiscRow, PlaneRow};
 use ndda_io::read;
 use ndda_io::scene::{Discontinuity, Rock, Scene, Whereabouts};
 use ndda_mesh::Vec3;
@@ -103,7 +103,7 @@ fn joints(scene: &Scene, folder: &Path) -> Result<Planes, StereonetError> {
             planes.push(Orientation { dip_deg, dip_direction_deg }, joint.name());
         }
         if let Discontinuity::Discs { file, .. } = joint {
-            let rows = joint_table::discs(&folder.join(file))?;
+            let rows = DiscRow::read_all(&folder.join(file))?;
             rows.into_iter().for_each(|row| planes.push_row(row.plane, joint.name()));
         }
     }
@@ -113,7 +113,7 @@ fn joints(scene: &Scene, folder: &Path) -> Result<Planes, StereonetError> {
 fn table(file: &Path) -> Result<Planes, StereonetError> {
     let title = file.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let mut planes = Planes { title, ..Planes::default() };
-    joint_table::planes(file)?.into_iter().for_each(|row| planes.push_row(row, NO_SET));
+    PlaneRow::read_all(file)?.into_iter().for_each(|row| planes.push_row(row, NO_SET));
     Ok(planes)
 }
 

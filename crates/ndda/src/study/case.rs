@@ -4,7 +4,7 @@ use std::path::Path;
 
 use ndda_io::checkpoint;
 use ndda_io::diagnostic::SceneErrors;
-use ndda_io::locate;
+use ndda_io::locate::Node;
 use ndda_io::study::{Axis, LoadedStudy, Reference, as_overrides};
 
 use super::error::StudyError;
@@ -129,7 +129,7 @@ pub fn fingerprint(loaded: &LoadedStudy, case: &Case) -> Result<String, SceneErr
     let text = read.text;
     let mut bytes = text.clone().into_bytes();
     let folder = loaded.scene.parent().unwrap_or(Path::new("."));
-    locate::tree(&text).for_each_leaf(&mut |leaf| {
+    Node::of(&text).for_each_leaf(&mut |leaf| {
         let word = text[leaf.span.clone()].trim_matches('"');
         let file = folder.join(word);
         // Any word that names a file, such as a mesh or a record, is part of the scene.

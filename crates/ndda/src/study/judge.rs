@@ -3,7 +3,7 @@
 use ndda_io::read::LoadedScene;
 use ndda_io::study::Reference;
 use ndda_io::summary::Named;
-use ndda_io::table::{self, Table};
+use ndda_io::table::Table;
 use serde_json::Value;
 
 use super::case::Case;
@@ -115,7 +115,7 @@ fn beyond_limits(summary: &Value) -> Vec<String> {
 
 fn history(launch: &Launch, case: &Case) -> Result<Table, StudyError> {
     let results = folder(launch.out, &case.name).join(RESULTS);
-    Ok(table::read(&results.join(ndda_io::folder::HISTORY))?)
+    Ok(Table::read(&results.join(ndda_io::OutputFolder::HISTORY))?)
 }
 
 /// History and scene of a reference run.

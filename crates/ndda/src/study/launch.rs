@@ -147,7 +147,7 @@ impl Launch<'_> {
         if let Some((cause, reason)) = self.runner.run(&run)? {
             return Ok(Err(RunOutcome::Failed { cause, reason }));
         }
-        let file = results.join(ndda_io::folder::SUMMARY);
+        let file = results.join(ndda_io::OutputFolder::SUMMARY);
         let broken = |reason: String| StudyError::Record { file: file.clone(), reason };
         let text = fs::read_to_string(&file).map_err(|e| broken(e.to_string()))?;
         serde_json::from_str(&text).map(Ok).map_err(|e| broken(e.to_string()))

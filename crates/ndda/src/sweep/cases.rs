@@ -145,7 +145,7 @@ mod tests {
     fn loaded(vary: &[&str], change: impl FnOnce(&mut Study)) -> LoadedStudy {
         let vary: Vec<String> = vary.iter().map(|text| text.to_string()).collect();
         let mut study = Study::of_scene("s.ron".into());
-        study.axes = study::vary(&vary).unwrap();
+        study.axes = Axis::from_words(&vary).unwrap();
         change(&mut study);
         LoadedStudy { study, curves: Vec::new(), scene: "s.ron".into(), scene_text: String::new() }
     }

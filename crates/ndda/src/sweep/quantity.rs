@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
+use ndda_io::results::Table;
 use ndda_io::summary::Summary;
-use ndda_io::{folder, read, results, table};
+use ndda_io::{OutputFolder, read};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -163,13 +164,13 @@ pub fn near(name: &str, numbers: &[(String, f64)]) -> String {
 /// # Errors
 /// [`StudyError`] when its summary or history cannot be read.
 pub fn of_run(run: &Path) -> Result<Values, StudyError> {
-    let file = run.join(folder::SUMMARY);
+    let file = run.join(OutputFolder::SUMMARY);
     let broken = |reason: String| StudyError::Record { file: file.clone(), reason };
     let text = std::fs::read_to_string(&file).map_err(|error| broken(error.to_string()))?;
     let summary: Summary = serde_json::from_str(&text).map_err(|error| broken(error.to_string()))?;
     let mut values = of_summary(&summary);
-    if let Some(history) = results::history_file(run) {
-        let history = table::read(&history)?;
+    if let Some(history) = OutputFolder::history_in(run) {
+        let history = Table::read(&history)?;
         let last = history.names.iter().zip(&history.columns).filter(|(name, _)| *name != TIME);
         values.numbers.extend(last.filter_map(|(name, column)| Some((name.clone(), *column.last()?))));
     }

@@ -52,7 +52,7 @@ fn parquet(out: &Path, results: &Results) -> Result<(), WriteError> {
     }
     let numbers = out.join("sweep_numbers.csv");
     write_csv(&numbers, &rows)?;
-    ndda_io::results::tables::copy_as_parquet(&numbers, &out.join("sweep.parquet"))?;
+    ndda_io::results::Table::copy_as_parquet(&numbers, &out.join("sweep.parquet"))?;
     std::fs::remove_file(&numbers).map_err(|source| WriteError::Io {
         operation: "remove",
         path: numbers,

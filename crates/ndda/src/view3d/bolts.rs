@@ -3,10 +3,9 @@
 use std::path::Path;
 use std::str::FromStr;
 
-use ndda_io::BoltLine;
-use ndda_io::folder::BOLTS_INDEX;
 use ndda_io::mesh_file::MeshFileError;
-use ndda_io::results::{self, ListedFrame};
+use ndda_io::results::ListedFrame;
+use ndda_io::{BoltLine, OutputFolder};
 use ndda_mesh::Vec3;
 
 /// What the colours of bolts say.
@@ -80,8 +79,8 @@ pub fn plain(bolt: usize, ends: [Vec3; 2]) -> Piece {
 /// # Errors
 /// The list of them cannot be read.
 pub fn listed(folder: &Path) -> Result<Vec<ListedFrame>, MeshFileError> {
-    let index = folder.join(BOLTS_INDEX);
-    if index.is_file() { results::frame_list(&index) } else { Ok(Vec::new()) }
+    let index = folder.join(OutputFolder::BOLTS_INDEX);
+    if index.is_file() { ListedFrame::read_all(&index) } else { Ok(Vec::new()) }
 }
 
 /// The bolts of the frame of some number and time [s]; several frames may have the same time.
@@ -91,7 +90,7 @@ pub fn listed(folder: &Path) -> Result<Vec<ListedFrame>, MeshFileError> {
 pub fn at(listed: &[ListedFrame], number: usize, time_s: f64) -> Result<Vec<BoltLine>, MeshFileError> {
     let same = |frame: &&ListedFrame| frame.time_s == time_s;
     match listed.get(number).filter(same).or_else(|| listed.iter().find(same)) {
-        Some(frame) => results::bolt_lines(&frame.path),
+        Some(frame) => BoltLine::read_all(&frame.path),
         None => Ok(Vec::new()),
     }
 }

@@ -32,7 +32,7 @@ pub enum ViewError {
     #[error(
         "{} holds no frames of blocks ({} is missing or empty): name the output folder of a run whose scene has output.frames above 0",
         folder.display(),
-        ndda_io::folder::FIELDS_INDEX
+        ndda_io::OutputFolder::FIELDS_INDEX
     )]
     NoFrames {
         /// The output folder.

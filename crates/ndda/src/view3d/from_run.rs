@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use ndda_io::folder::{FIELDS_INDEX, SUMMARY};
-use ndda_io::results::{self, FieldFrame, ListedFrame};
+use ndda_io::results::{FieldFrame, ListedFrame};
+use ndda_io::{OutputFolder, Summary};
 use ndda_mesh::Vec3;
 use ndda_mesh::geometry::Aabb;
 
@@ -80,9 +80,9 @@ pub enum Frames {
 /// [`ViewError`] when the folder has no frames, a frame is damaged or of another run, or there is no such frame or field.
 pub fn read(folder: &Path, frames: Frames, colour: &Colour) -> Result<Film, ViewError> {
     let folder = &with_frames(folder)?;
-    let listed = results::frame_list(&folder.join(FIELDS_INDEX))?;
+    let listed = ListedFrame::read_all(&folder.join(OutputFolder::FIELDS_INDEX))?;
     let first_listed = listed.first().ok_or_else(|| ViewError::NoFrames { folder: folder.clone() })?;
-    let first = results::frame(&first_listed.path)?;
+    let first = FieldFrame::read(&first_listed.path)?;
     let surface = Surface::new(&first);
     let start = positions(&first, &surface, &first_listed.path)?;
     let source = Source::find(colour, &first, &surface)?;
@@ -96,7 +96,7 @@ pub fn read(folder: &Path, frames: Frames, colour: &Colour) -> Result<Film, View
     };
     for index in shown {
         let ListedFrame { time_s, path } = &listed[index];
-        let frame = results::frame(path)?;
+        let frame = FieldFrame::read(path)?;
         same_blocks(path, &first, &frame, &[])?;
         let positions = positions(&frame, &surface, path)?;
         let values = source.values(path, &frame, &surface, [&start, &positions])?;
@@ -106,7 +106,7 @@ pub fn read(folder: &Path, frames: Frames, colour: &Colour) -> Result<Film, View
     }
     let moves = moving(&surface, &start, &moments);
     let colouring = source.colouring(&surface, &moves, &moments);
-    let motion = results::summary(&folder.join(SUMMARY)).ok().and_then(|summary| summary.motion);
+    let motion = Summary::read(&folder.join(OutputFolder::SUMMARY)).ok().and_then(|summary| summary.motion);
     let last = moments.last().expect("at least one frame is chosen");
     let is_end = listed.last().map(|listed| listed.time_s) == last.time_s;
     let moved = match &motion {
@@ -121,14 +121,14 @@ pub fn read(folder: &Path, frames: Frames, colour: &Colour) -> Result<Film, View
 /// The folder itself, or that of the failing run in it, which `ndda safety` writes.
 fn with_frames(folder: &Path) -> Result<PathBuf, ViewError> {
     let candidates = [folder.to_path_buf(), folder.join(MECHANISM)];
-    let found = candidates.into_iter().find(|folder| folder.join(FIELDS_INDEX).is_file());
+    let found = candidates.into_iter().find(|folder| folder.join(OutputFolder::FIELDS_INDEX).is_file());
     found.ok_or_else(|| ViewError::NoFrames { folder: folder.to_path_buf() })
 }
 
 /// The title in the summary; the name of the folder while there is none.
 fn title(folder: &Path) -> String {
     let name = || folder.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-    match results::summary(&folder.join(SUMMARY)) {
+    match Summary::read(&folder.join(OutputFolder::SUMMARY)) {
         Ok(summary) if !summary.title.trim().is_empty() => summary.title,
         _ => name(),
     }
@@ -166,7 +166,7 @@ fn seen(listed: &[ListedFrame], first: &FieldFrame, surface: &Surface) -> Result
         corners.iter().for_each(|&n| bounds[block as usize].grow(&start[n as usize]));
     }
     for (index, ListedFrame { path, .. }) in listed.iter().enumerate() {
-        let frame = results::frame(path)?;
+        let frame = FieldFrame::read(path)?;
         same_blocks(path, first, &frame, &[])?;
         let now = positions(&frame, surface, path)?;
         let has_gone = |(corners, &block): (&[u32; 3], &u32)| {

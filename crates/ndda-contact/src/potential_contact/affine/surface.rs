@@ -1,6 +1,6 @@
 //! The flat faces of a block's surface in its rest shape, and whether the block is convex.
 
-use ndda_mesh::geometry::{Aabb, triangle_area_vector};
+use ndda_mesh::geometry::{Aabb, reach_below, triangle_area_vector};
 use ndda_mesh::{BlockId, BlockSet, NodeId, Vec3};
 
 /// Triangles whose normals and offsets differ by less than this part are in one plane.
@@ -68,7 +68,7 @@ impl BlockFaces {
     /// Width of a convex block at rest: how far it reaches below a face, where that is least [m].
     pub(crate) fn width_m(&self, blocks: &BlockSet, block: BlockId) -> Option<f64> {
         let nodes = &blocks.rest_position[blocks.nodes_of(block)];
-        let reach = |plane: &Plane| nodes.iter().map(|x| plane.depth_m(x)).fold(0.0, f64::max);
+        let reach = |plane: &Plane| reach_below(&plane.normal, &plane.point, nodes);
         self.convex.then(|| self.planes.iter().map(reach).fold(f64::INFINITY, f64::min))
     }
 

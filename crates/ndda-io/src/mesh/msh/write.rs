@@ -16,7 +16,7 @@ use crate::write_error::WriteError;
 ///
 /// # Errors
 /// [`WriteError`] for a number that is not finite, a name that cannot be kept, and what the operating system refuses.
-pub fn write(path: &Path, bodies: &[(String, BlockMesh)]) -> Result<(), WriteError> {
+pub(crate) fn write(path: &Path, bodies: &[(String, BlockMesh)]) -> Result<(), WriteError> {
     let joined = Joined::new(path, bodies)?;
     let mut text = String::from("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n");
     let written = groups(&mut text, &joined)

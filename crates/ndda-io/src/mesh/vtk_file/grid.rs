@@ -1,5 +1,4 @@
-//! Writes unstructured grids as text by hand, arrays inline or appended: `vtkio` knows no appended arrays, no field data
-//! and no faces.
+//! Writes unstructured grids as text by hand, arrays inline or appended.
 //!
 //! Format: VTK user's guide, "VTK File Formats". Numbers are little-endian, headers of arrays are 64-bit.
 

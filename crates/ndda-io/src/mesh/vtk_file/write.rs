@@ -18,7 +18,7 @@ use crate::write_error::WriteError;
 ///
 /// # Errors
 /// [`WriteError`] for a number that is not finite, a name that cannot be kept, and what the operating system refuses.
-pub fn write(path: &Path, bodies: &[(String, BlockMesh)]) -> Result<(), WriteError> {
+pub(crate) fn write(path: &Path, bodies: &[(String, BlockMesh)]) -> Result<(), WriteError> {
     let joined = Joined::new(path, bodies)?;
     let mut grid = Grid::new(joined.nodes.len(), joined.tets.len(), FieldFormat::Base64);
     grid.open("FieldData");

@@ -4,16 +4,13 @@ use std::fs::{self, File, FileType, TryLockError};
 use std::io::ErrorKind;
 use std::path::Path;
 
-use super::{
-    CHECKPOINT, ENDING, FIELDS_FOLDER, FIELDS_INDEX, LOG, MESH_REPORT, OF_STAGE, PREVIOUS, PROBE, TOP_FILES,
-    WAITING,
-};
+use super::{ENDING, OF_STAGE, OutputFolder, PREVIOUS, PROBE, TOP_FILES, WAITING};
 use crate::atomic::TEMPORARY_ENDING;
 use crate::write_error::WriteError;
 
 /// A run holds a lock on its log; where files cannot be locked, none does.
 pub(super) fn refuse_while_in_use(path: &Path) -> Result<(), WriteError> {
-    let log = File::open(path.join(LOG)).ok();
+    let log = File::open(path.join(OutputFolder::LOG)).ok();
     match log.map(|log| log.try_lock_shared()) {
         Some(Err(TryLockError::WouldBlock)) => Err(WriteError::InUse { path: path.to_path_buf() }),
         _ => Ok(()),
@@ -36,13 +33,13 @@ fn names_but_probe(path: &Path) -> Result<Vec<String>, WriteError> {
 }
 
 fn is_ours(name: &str) -> bool {
-    is_top_file(name) || name == FIELDS_FOLDER
+    is_top_file(name) || name == OutputFolder::FIELDS_FOLDER
 }
 
 /// A folder with files, none of which is of an earlier run, was not meant.
 pub(super) fn refuse_unless_results(path: &Path) -> Result<(), WriteError> {
     let names = names_but_probe(path)?;
-    let is_result = |name: &String| is_ours(name) || name == MESH_REPORT;
+    let is_result = |name: &String| is_ours(name) || name == OutputFolder::MESH_REPORT;
     match names.first() {
         Some(found) if !names.iter().any(is_result) => {
             Err(WriteError::NotOurs { path: path.to_path_buf(), found: found.clone() })
@@ -53,7 +50,7 @@ pub(super) fn refuse_unless_results(path: &Path) -> Result<(), WriteError> {
 
 pub(super) fn refuse_unless_empty(path: &Path) -> Result<(), WriteError> {
     let names = names_but_probe(path)?;
-    let is_result = |name: &&String| is_ours(name) || *name == MESH_REPORT;
+    let is_result = |name: &&String| is_ours(name) || *name == OutputFolder::MESH_REPORT;
     if let Some(found) = names.iter().find(is_result) {
         return Err(WriteError::EarlierRun { path: path.to_path_buf(), found: found.clone() });
     }
@@ -74,7 +71,7 @@ pub(super) fn delete_earlier_run(path: &Path) -> Result<(), WriteError> {
         if is_of_stage(&name) {
             of_stages.push(path.join(&name));
         }
-        if name == FIELDS_FOLDER {
+        if name == OutputFolder::FIELDS_FOLDER {
             // A link is not followed: what it points to may be somebody else's.
             if !kind.is_dir() {
                 return in_the_way("folder");
@@ -82,7 +79,7 @@ pub(super) fn delete_earlier_run(path: &Path) -> Result<(), WriteError> {
             has_frames = true;
         }
     }
-    let frames = path.join(FIELDS_FOLDER);
+    let frames = path.join(OutputFolder::FIELDS_FOLDER);
     let mut frame_files = Vec::new();
     if has_frames {
         for (name, kind) in entries(&frames)? {
@@ -95,7 +92,7 @@ pub(super) fn delete_earlier_run(path: &Path) -> Result<(), WriteError> {
         }
     }
     // Checkpoints go first: what has lost its rows and frames must not be resumed.
-    for name in [CHECKPOINT, PREVIOUS, WAITING, FIELDS_INDEX] {
+    for name in [OutputFolder::CHECKPOINT, PREVIOUS, WAITING, OutputFolder::FIELDS_INDEX] {
         delete(&path.join(name))?;
     }
     for file in of_stages.iter().chain(&frame_files) {

@@ -14,12 +14,14 @@ pub struct BoltForces {
     pub bolts: Vec<(String, Vec<f64>)>,
 }
 
-/// Reads `bolts.csv`.
-///
-/// # Errors
-/// [`ResultsError`] when it cannot be read, lacks a column, or has a cell that is no number.
-pub fn bolt_forces(path: &Path) -> Result<BoltForces, ResultsError> {
-    read(path).map_err(|reason| TableError::Unreadable { file: path.to_path_buf(), reason }.into())
+impl BoltForces {
+    /// Reads `bolts.csv`.
+    ///
+    /// # Errors
+    /// [`ResultsError`] when it cannot be read, lacks a column, or has a cell that is no number.
+    pub fn read(path: &Path) -> Result<Self, ResultsError> {
+        read(path).map_err(|reason| TableError::Unreadable { file: path.to_path_buf(), reason }.into())
+    }
 }
 
 /// A table has more bolts than this only where it is damaged.
@@ -89,7 +91,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("bolts.csv");
         std::fs::write(&path, text).unwrap();
-        bolt_forces(&path).map_err(|error| error.to_string())
+        BoltForces::read(&path).map_err(|error| error.to_string())
     }
 
     #[test]

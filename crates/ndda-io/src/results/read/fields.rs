@@ -33,24 +33,26 @@ pub struct FieldFrame {
     pub cell_data: BTreeMap<String, Array>,
 }
 
-/// Reads `fields.pvd`: the frames in the order of the list.
-///
-/// # Errors
-/// [`MeshFileError`] when it cannot be read, or an entry has no file or no time.
-pub fn frame_list(path: &Path) -> Result<Vec<ListedFrame>, MeshFileError> {
-    let bytes = bytes_of(path)?;
-    let folder = path.parent().unwrap_or(Path::new("."));
-    let mut reader = Reader::from_reader(bytes.as_slice());
-    let mut frames = Vec::new();
-    loop {
-        let event = reader.read_event();
-        let broken = |e: quick_xml::Error| unexpected("XML", &e.to_string()).of(path);
-        match event.map_err(broken)? {
-            Event::Eof => return Ok(frames),
-            Event::Start(start) | Event::Empty(start) if start.local_name().as_ref() == b"DataSet" => {
-                frames.push(listed(&start, folder).map_err(|fault| fault.of(path))?);
+impl ListedFrame {
+    /// Reads `fields.pvd`: the frames in the order of the list.
+    ///
+    /// # Errors
+    /// [`MeshFileError`] when it cannot be read, or an entry has no file or no time.
+    pub fn read_all(path: &Path) -> Result<Vec<Self>, MeshFileError> {
+        let bytes = bytes_of(path)?;
+        let folder = path.parent().unwrap_or(Path::new("."));
+        let mut reader = Reader::from_reader(bytes.as_slice());
+        let mut frames = Vec::new();
+        loop {
+            let event = reader.read_event();
+            let broken = |e: quick_xml::Error| unexpected("XML", &e.to_string()).of(path);
+            match event.map_err(broken)? {
+                Event::Eof => return Ok(frames),
+                Event::Start(start) | Event::Empty(start) if start.local_name().as_ref() == b"DataSet" => {
+                    frames.push(listed(&start, folder).map_err(|fault| fault.of(path))?);
+                }
+                _ => {}
             }
-            _ => {}
         }
     }
 }
@@ -71,13 +73,15 @@ fn unexpected(expected: &str, found: &str) -> Fault {
     FileProblem::Unexpected { expected: expected.into(), found: found.into() }.into()
 }
 
-/// Reads a frame.
-///
-/// # Errors
-/// [`MeshFileError`] when it cannot be read, or holds other cells than tetrahedra.
-pub fn frame(path: &Path) -> Result<FieldFrame, MeshFileError> {
-    let bytes = bytes_of(path)?;
-    vtk_file::data(&bytes).and_then(from_data).map_err(|fault| fault.of(path))
+impl FieldFrame {
+    /// Reads a frame.
+    ///
+    /// # Errors
+    /// [`MeshFileError`] when it cannot be read, or holds other cells than tetrahedra.
+    pub fn read(path: &Path) -> Result<Self, MeshFileError> {
+        let bytes = bytes_of(path)?;
+        vtk_file::data(&bytes).and_then(from_data).map_err(|fault| fault.of(path))
+    }
 }
 
 fn from_data(data: Data) -> Result<FieldFrame, Fault> {
@@ -130,9 +134,9 @@ mod tests {
             frame.add_cells(Values::new("stress_pa", stress.into_iter(), Precision::F64));
             series.push(time_s, &frame).unwrap();
         }
-        let listed = frame_list(&output.fields_index()).unwrap();
+        let listed = ListedFrame::read_all(&output.fields_index()).unwrap();
         assert_eq!(listed.iter().map(|f| f.time_s).collect::<Vec<_>>(), [0.0, 0.1 + 0.2]);
-        let read = frame(&listed[1].path).unwrap();
+        let read = FieldFrame::read(&listed[1].path).unwrap();
         assert_eq!(read.points, blocks.rest_position);
         assert_eq!(read.tets, [[0, 1, 2, 3]]);
         let found = &read.point_data["velocity_m_s"];
@@ -149,18 +153,16 @@ mod tests {
             ["<DataSet file=\"a.vtu\"/>", "<DataSet timestep=\"x\" file=\"a.vtu\"/>", "<DataSet timestep"]
         {
             std::fs::write(&index, format!("<VTKFile><Collection>{entry}</Collection></VTKFile>")).unwrap();
-            let error = frame_list(&index).unwrap_err().to_string();
+            let error = ListedFrame::read_all(&index).unwrap_err().to_string();
             assert!(error.contains("fields.pvd"), "{error}");
         }
         let path = folder.path().join("frame.vtu");
         let blocks = one_tet();
         let topology = Topology::new(&blocks, FieldFormat::default()).with_blocks(&blocks);
-        let whole =
-            crate::results::vtu::encode(&path, &topology, &Frame::new(&blocks, &blocks.rest_position))
-                .unwrap();
+        let whole = Frame::new(&blocks, &blocks.rest_position).encode(&path, &topology).unwrap();
         for part in 1..20 {
             std::fs::write(&path, &whole[..whole.len() * part / 20]).unwrap();
-            let error = frame(&path).unwrap_err().to_string();
+            let error = FieldFrame::read(&path).unwrap_err().to_string();
             assert!(error.contains("frame.vtu"), "{error}");
         }
     }

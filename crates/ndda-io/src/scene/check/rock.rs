@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::{CELLS, Check, TETRAHEDRA};
 use crate::scene::code::Code;
-use crate::scene::joint_table;
+use crate::scene::joint_table::DiscRow;
 use crate::scene::{Body, DiscRule, Discontinuity, Domain, Fill, OrientationScatter, Pieces, Rock, Scene};
 use crate::scene::{Slivers, SpacingScatter, Whereabouts, matches};
 
@@ -24,7 +24,7 @@ pub(super) fn joint_names(scene: &Scene, folder: Option<&Path>) -> Option<Vec<St
     let mut names = Vec::new();
     for joint in scene.rock.iter().flat_map(|rock| &rock.joints) {
         if let Discontinuity::Discs { file, .. } = joint {
-            let rows = joint_table::discs(&folder?.join(file)).ok()?;
+            let rows = DiscRow::read_all(&folder?.join(file)).ok()?;
             names.extend(rows.into_iter().filter_map(|row| row.plane.set));
         }
         names.push(joint.name().to_string());
@@ -323,7 +323,7 @@ impl Check<'_> {
                 let before = self.found.len();
                 self.file(field("file"), file, folder);
                 let table = folder.filter(|_| before == self.found.len());
-                if let Some(Err(error)) = table.map(|folder| joint_table::discs(&folder.join(file))) {
+                if let Some(Err(error)) = table.map(|folder| DiscRow::read_all(&folder.join(file))) {
                     self.report(Code::OutOfRange, field("file"), error.to_string(), DISC_COLUMNS);
                 }
             }

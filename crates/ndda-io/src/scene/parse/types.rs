@@ -9,7 +9,7 @@ use serde::de::DeserializeOwned;
 use super::{sort, words};
 use crate::scene::code::Code;
 use crate::scene::diagnostic::Diagnostic;
-use crate::scene::locate::{self, Node};
+use crate::scene::locate::Node;
 use crate::scene::units::Resolved;
 
 /// Mistakes of fields and types that are told at once.
@@ -98,7 +98,7 @@ impl<'a> Reader<'a> {
 
     /// Tells a mistake, and puts something in its place; false where nothing after it can be read.
     fn goes_on_after<T: DeserializeOwned>(&mut self, error: &SpannedError) -> bool {
-        let shape = locate::tree(&self.plain.text);
+        let shape = Node::of(&self.plain.text);
         let plain = &self.plain.text;
         let at = words::after_blanks(plain, words::offset(plain, &error.span.start));
         // RON points at the closing bracket of a struct that lacks a field.

@@ -6,8 +6,9 @@ use super::{Axis, Reference, Study, as_overrides};
 use crate::scene::Scene;
 use crate::scene::code::Code;
 use crate::scene::diagnostic::Diagnostic;
+use crate::scene::locate::Node;
 use crate::scene::parse::parse_with;
-use crate::scene::{locate, overrides, parameter_values, suggest};
+use crate::scene::{overrides, parameter_values, suggest};
 
 pub(super) fn default_curves(study: &Study) -> Vec<String> {
     let others = study.axes.iter().filter(|axis| !axis.varies("time.step_s"));
@@ -135,7 +136,7 @@ pub(super) fn lost_paths(study: &Study, scene_text: &str) -> Vec<Diagnostic> {
 
 /// The first field of a text that no scene has.
 fn unknown_field(text: &str) -> Option<Diagnostic> {
-    let tree = locate::tree(text);
+    let tree = Node::of(text);
     let (parameters, _) = parameter_values::read(text, &tree).ok()?;
     let found = parse_with::<Scene>(text, &tree, &parameters).err()?.found;
     found.into_iter().find(|d| d.code == Code::UnknownField)

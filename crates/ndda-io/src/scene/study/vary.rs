@@ -7,20 +7,22 @@ use crate::scene::code::Code;
 use crate::scene::diagnostic::{Diagnostic, SceneErrors};
 use crate::scene::locate;
 
-/// The axes that a command line names; one whose last part of the path is that of another goes by its whole path.
-///
-/// # Errors
-/// A text that is none of the two.
-pub fn vary(texts: &[String]) -> Result<Vec<Axis>, SceneErrors> {
-    let mut axes = texts.iter().map(|text| axis(text)).collect::<Result<Vec<_>, _>>()?;
-    let names: Vec<String> = axes.iter().map(|axis| axis.name().to_string()).collect();
-    for axis in &mut axes {
-        let shared = names.iter().filter(|name| *name == axis.name()).count() > 1;
-        if let (true, Axis::Vary { path, name, .. } | Axis::Random { path, name, .. }) = (shared, axis) {
-            *name = Some(path.clone());
+impl Axis {
+    /// The axes that a command line names; one whose last part of the path is that of another goes by its whole path.
+    ///
+    /// # Errors
+    /// A text that is none of the two.
+    pub fn from_words(texts: &[String]) -> Result<Vec<Self>, SceneErrors> {
+        let mut axes = texts.iter().map(|text| axis(text)).collect::<Result<Vec<_>, _>>()?;
+        let names: Vec<String> = axes.iter().map(|axis| axis.name().to_string()).collect();
+        for axis in &mut axes {
+            let shared = names.iter().filter(|name| *name == axis.name()).count() > 1;
+            if let (true, Axis::Vary { path, name, .. } | Axis::Random { path, name, .. }) = (shared, axis) {
+                *name = Some(path.clone());
+            }
         }
+        Ok(axes)
     }
-    Ok(axes)
 }
 
 fn axis(text: &str) -> Result<Axis, SceneErrors> {
@@ -82,7 +84,7 @@ mod tests {
 
     fn read(texts: &[&str]) -> Result<Vec<Axis>, String> {
         let texts: Vec<String> = texts.iter().map(|text| text.to_string()).collect();
-        vary(&texts).map_err(|errors| errors.render(false))
+        Axis::from_words(&texts).map_err(|errors| errors.render(false))
     }
 
     #[test]

@@ -146,7 +146,7 @@ pub const DIMENSIONS: [Dimension; 16] = [
 ];
 
 /// The dimension of a field, by its name.
-pub fn dimension_of(field: &str) -> Option<&'static Dimension> {
+pub(crate) fn dimension_of(field: &str) -> Option<&'static Dimension> {
     DIMENSIONS.iter().find(|d| field.ends_with(d.suffix))
 }
 

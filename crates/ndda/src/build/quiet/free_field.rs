@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use ndda_fem::quiet::speed_m_s;
 use ndda_fem::{Material, Motion, PlaneWave, QuietFaces, Record};
-use ndda_io::record;
 use ndda_io::scene::{IncidentWave, Quiet, RecordedAs, Scene, Then, WaveKind};
 use ndda_mesh::{BlockId, BlockSet, Vec3};
 use ndda_solver::QuietSetup;
@@ -121,7 +120,7 @@ impl Ground<'_> {
             layers.push(Layer { impedance: material.density_kg_m3() * c, travel_s });
             at_m = stratum.top_m;
         }
-        let prepared = record::prepare(&wave.record, self.folder).map_err(|error| error.to_string())?;
+        let prepared = wave.record.prepared(self.folder).map_err(|error| error.to_string())?;
         let share = if wave.motion == RecordedAs::Outcrop { 0.5 } else { 1.0 };
         let rows: Vec<(f64, f64)> = prepared.rows.iter().map(|(t, a)| (*t, share * a)).collect();
         let mut bottom_m = from.dot(up);

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::Path;
 
-use ndda_io::joint_table::{self, DiscRow};
+use ndda_io::joint_table::DiscRow;
 use ndda_io::scene::{self, Rock};
 use ndda_mesh::cut::{
     Disc, DiscReport, DiscRule, Discontinuity, JointSet, OrientationScatter, Plane, SpacingScatter,
@@ -134,7 +134,7 @@ fn discontinuity(joint: &scene::Discontinuity, folder: &Path) -> Result<Vec<Disc
             })])
         }
         scene::Discontinuity::Discs { name, file, rule } => {
-            let rows = joint_table::discs(&folder.join(file)).map_err(|e| e.to_string())?;
+            let rows = DiscRow::read_all(&folder.join(file)).map_err(|e| e.to_string())?;
             Ok(sorted(rows).into_iter().map(|row| disc(row, name, *rule)).collect())
         }
     }
