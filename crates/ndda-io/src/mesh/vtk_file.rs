@@ -1,7 +1,7 @@
 //! VTK's files: meshes from `.vtu` and legacy `.vtk`, and what a mesh and blocks are written to.
 //!
-//! Format: VTK user's guide, "VTK File Formats". All is read and written here: the crate `vtkio` keeps no field data, where the names of bodies
-//! are, and no faces of polyhedra, unpacks only with a crate that has an advisory, and gives no line for what it refuses.
+//! Format: VTK user's guide, "VTK File Formats". Legacy files are written by `vtkio`. XML is read and written here: `vtkio` keeps no field
+//! data, where the names of bodies are, and no faces of polyhedra, unpacks only with a crate that has an advisory, and gives no line for what it refuses.
 
 mod base64;
 mod binary;

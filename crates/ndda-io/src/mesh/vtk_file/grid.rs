@@ -1,4 +1,5 @@
-//! Writes unstructured grids as text by hand, arrays inline or appended.
+//! Writes unstructured grids as text by hand, arrays inline or appended: `vtkio` knows no appended arrays, no field data
+//! and no faces.
 //!
 //! Format: VTK user's guide, "VTK File Formats". Numbers are little-endian, headers of arrays are 64-bit.
 

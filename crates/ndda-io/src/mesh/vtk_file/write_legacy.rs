@@ -1,16 +1,17 @@
-//! Writes meshes as legacy `.vtk` (version 4.2, binary) for programs that read no XML.
+//! Writes meshes as legacy `.vtk` (binary) by the crate `vtkio`, for programs that read no XML.
 
 use std::path::Path;
 
 use ndda_mesh::BlockMesh;
+use vtkio::model::{
+    Attribute, Attributes, ByteOrder, CellType, Cells, DataArray, DataSet, IOBuffer, Piece,
+    UnstructuredGridPiece, Version, VertexNumbers, Vtk,
+};
 
 use super::data::SET;
 use crate::atomic;
 use crate::mesh::join::Joined;
 use crate::write_error::WriteError;
-
-/// Number of tetrahedra among VTK's kinds of cells.
-const TETRAHEDRON: i32 = 10;
 
 /// Writes a mesh of tetrahedra as legacy `.vtk`: cell data `body` counts the bodies from 0, whose names the format cannot keep; each node
 /// set is point data `set:name` of 0 and 1.
@@ -19,44 +20,42 @@ const TETRAHEDRON: i32 = 10;
 /// As [`write`](super::write()).
 pub(crate) fn write(path: &Path, bodies: &[(String, BlockMesh)]) -> Result<(), WriteError> {
     let joined = Joined::new(path, bodies)?;
-    let (nodes, tets) = (joined.nodes.len(), joined.tets.len());
-    if u32::try_from(5 * tets).is_err() {
-        let reason = "more tetrahedra than a legacy file has numbers for".into();
-        return Err(WriteError::Encode { path: path.to_path_buf(), reason });
-    }
-    // All numbers are big-endian.
-    let mut file =
-        b"# vtk DataFile Version 4.2\nmesh of ndda\nBINARY\n\nDATASET UNSTRUCTURED_GRID\n".to_vec();
-    let points = joined.nodes.iter().flat_map(|x| [x.x, x.y, x.z]);
-    part(&mut file, &format!("POINTS {nodes} double"), points.flat_map(f64::to_be_bytes));
-    let cells = joined.tets.iter().flat_map(|tet| [4, tet[0], tet[1], tet[2], tet[3]]);
-    part(&mut file, &format!("\nCELLS {tets} {}", 5 * tets), cells.flat_map(u32::to_be_bytes));
-    let kinds = std::iter::repeat_n(TETRAHEDRON, tets);
-    part(&mut file, &format!("\nCELL_TYPES {tets}"), kinds.flat_map(i32::to_be_bytes));
-    file.extend(format!("\nPOINT_DATA {nodes}\n").bytes());
-    for (name, set) in &joined.sets {
-        let mut flags = vec![0u8; nodes];
-        set.iter().for_each(|&node| flags[node as usize] = 1);
-        part(&mut file, &scalars(&format!("{SET}{name}"), "unsigned_char"), flags);
-    }
-    file.extend(format!("\nCELL_DATA {tets}\n").bytes());
-    let body = joined.body_of_tets().map(|body| body as i32);
-    part(&mut file, &scalars("body", "int"), body.flat_map(i32::to_be_bytes));
-    file.push(b'\n');
-    atomic::write(path, &file)
+    let refuse = |reason: String| WriteError::Encode { path: path.to_path_buf(), reason };
+    let vertices = joined.tets.iter().flat_map(|tet| [4, tet[0], tet[1], tet[2], tet[3]]).collect();
+    let num_cells =
+        u32::try_from(joined.tets.len()).map_err(|_| refuse("more than 2³² tetrahedra".into()))?;
+    let set = |(name, nodes): (&&str, &Vec<u32>)| {
+        let mut flags = vec![0u8; joined.nodes.len()];
+        nodes.iter().for_each(|&node| flags[node as usize] = 1);
+        field(&format!("{SET}{name}"), IOBuffer::from(flags))
+    };
+    let body: Vec<i32> = joined.body_of_tets().map(|body| body as i32).collect();
+    let piece = UnstructuredGridPiece {
+        points: joined.nodes.iter().flat_map(|x| [x.x, x.y, x.z]).collect::<Vec<f64>>().into(),
+        cells: Cells {
+            cell_verts: VertexNumbers::Legacy { num_cells, vertices },
+            types: vec![CellType::Tetra; joined.tets.len()],
+        },
+        data: Attributes {
+            point: joined.sets.iter().map(set).collect(),
+            cell: vec![field("body", IOBuffer::from(body))],
+        },
+    };
+    let file = Vtk {
+        version: Version::new_legacy(4, 2),
+        title: "mesh of ndda".into(),
+        byte_order: ByteOrder::BigEndian,
+        file_path: None,
+        data: DataSet::UnstructuredGrid { meta: None, pieces: vec![Piece::Inline(Box::new(piece))] },
+    };
+    let mut bytes = Vec::new();
+    file.write_legacy(&mut bytes).map_err(|error| refuse(format!("vtkio: {error:?}")))?;
+    atomic::write(path, &bytes)
 }
 
-/// A header and the numbers after it.
-fn part(file: &mut Vec<u8>, header: &str, numbers: impl IntoIterator<Item = u8>) {
-    file.extend(header.bytes());
-    file.push(b'\n');
-    file.extend(numbers);
-    file.push(b'\n');
-}
-
-/// Header of one number per point or cell.
-fn scalars(name: &str, kind: &str) -> String {
+/// One number per point or cell.
+fn field(name: &str, values: IOBuffer) -> Attribute {
     // The format ends a name at white space; VTK writes it so.
     let name = name.replace('%', "%25").replace(' ', "%20");
-    format!("\nSCALARS {name} {kind} 1\nLOOKUP_TABLE default")
+    Attribute::DataArray(DataArray { data: values, ..DataArray::scalars(name, 1) })
 }
