@@ -23,6 +23,10 @@ pub const SCHEMA: &str = "ndda.certificate/1";
 const MESH_ORDER: f64 = 1.0;
 /// The largest order in the size of elements, that of linear tetrahedra.
 const MOST_MESH_ORDER: f64 = 2.0;
+/// Error bar over the scale from which on a run is not accurate without a word.
+const WIDE: f64 = 0.01;
+/// Error bar over the scale up to which differences that do not fall are rounding.
+const NOTHING: f64 = 1e-7;
 /// The order in 1/k_n of the error of soft contact.
 const PENALTY_ORDER: f64 = 1.0;
 
@@ -112,6 +116,9 @@ pub struct Certified {
     pub own_error: f64,
     /// Contributions to the error bar.
     pub parts: Parts,
+    /// The largest value of its kind in the run of the shortest step: of a vector's components, or of all energies.
+    #[serde(default)]
+    pub scale: f64,
 }
 
 /// Contributions to an error bar.
@@ -165,6 +172,8 @@ pub fn certify(histories: &Histories, basis: &Basis) -> Vec<Certified> {
         let tables = [coarse, middle, fine];
         let runs = [0, 1, 2].map(|k| values_of(tables[k], quantity, &rows[k]));
         let mut certified = of_steps(quantity, &runs, basis.order, floor);
+        certified.scale = scales[quantity.group];
+        certified.forgive();
         certified.add(unresolved(quantity.kind, lost_j, basis));
         let more = |tables: &[Table], part: fn([&[f64]; 3], usize, f64) -> f64| {
             refined(fine, tables, quantity, floor, part)
@@ -210,6 +219,7 @@ fn of_steps(quantity: &Quantity, runs: &[Vec<f64>; 3], theory: f64, floor: f64) 
         own_value: value(0),
         own_error: (value(0) - tends_to).abs() + error,
         parts: Parts { step: error, mesh: None, penalty: None },
+        scale: 0.0,
     }
 }
 
@@ -225,6 +235,19 @@ fn root_mean_square(some: &[Estimate]) -> f64 {
 }
 
 impl Certified {
+    /// Whether the error bar of the value at the shortest step, or else at the scene's own, is more than 1 % of the scale.
+    pub fn is_wide(&self, own: bool) -> bool {
+        let error = if own { self.own_error } else { self.error };
+        error > WIDE * self.scale
+    }
+
+    /// Differences that do not fall and are next to nothing are rounding that slip and contact have made larger.
+    fn forgive(&mut self) {
+        if self.behaviour == Behaviour::Spreads && self.largest_error <= NOTHING * self.scale {
+            self.behaviour = Behaviour::Rounding;
+        }
+    }
+
     /// Adds to the error of the time step.
     fn add(&mut self, more: f64) {
         self.parts.step += more;
