@@ -18,6 +18,8 @@ const WINDOW: f64 = 60.0;
 const TOUCHES_WITHIN: f64 = 3.5;
 /// Largest speed of a rebound over |g|/ω_c.
 const FASTEST: f64 = 10.0;
+/// Least cosine between the gain and the way of a block, 1/√(1 + μ²) where it slides.
+const ALONG: f64 = 0.6;
 /// Cosine between directions of a load that does not turn.
 const SAME: f64 = 0.999_999;
 
@@ -108,10 +110,14 @@ impl Rebound {
         }
         let [first, second] = [0, 1].map(|k| self.impulse_m[k] / self.window_s[k]);
         let Some(direction) = (second - first).try_normalize(0.0) else { return 0.0 };
-        let gained_m_s = (first - first.dot(&direction) * direction).norm();
-        let mean_m_s = self.way_m.norm() / (self.window_s[0] + self.window_s[1]);
+        let gain_m_s = first - first.dot(&direction) * direction;
+        let gained_m_s = gain_m_s.norm();
+        let way_m = self.way_m.norm();
+        let mean_m_s = way_m / (self.window_s[0] + self.window_s[1]);
         let fastest_m_s = FASTEST * self.load_m_s2.norm() / self.rate2.sqrt();
-        if gained_m_s <= mean_m_s.min(fastest_m_s) { gained_m_s } else { 0.0 }
+        // Blocks that others push aside meanwhile go elsewhere.
+        let is_along = gain_m_s.dot(&self.way_m) > ALONG * gained_m_s * way_m;
+        if is_along && gained_m_s <= mean_m_s.min(fastest_m_s) { gained_m_s } else { 0.0 }
     }
 
     /// What rebounds have added to the speed of a block that slid on [m/s].

@@ -34,7 +34,7 @@ fn nothing_is(scene: &Scene, blocks: &BlockSet) -> bool {
 
 /// What is said where nothing loads the blocks.
 const NOTHING_LOADS: &str =
-    "nothing loads the blocks: there is no gravity, force, pressure, stress, speed or motion";
+    "nothing but overlaps loads the blocks: there is no gravity, force, pressure, stress, speed or motion";
 /// Its cure.
 pub const LOAD: &str = "give gravity_m_s2, as (0, 0, -9.81), or another load";
 

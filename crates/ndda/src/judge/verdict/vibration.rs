@@ -70,7 +70,7 @@ pub(super) fn chatter(simulation: &Simulation) -> Option<Entry> {
 pub(super) fn rebound(simulation: &Simulation) -> Option<Entry> {
     let worst = simulation.invariants().rebound_speed;
     let reason = format!(
-        "block `{}` may slide too fast by {:.1} % of the largest speed, limit {:.0} %: it stuck and slipped while its contact rebounded from gravity, the more the softer contact is; raise penalty_pa, set gravity_ramp_s, or begin with {SETTLE}",
+        "block `{}` may slide too fast by about {:.1} % of the largest speed, limit {:.0} %: it stuck and slipped while its contact rebounded from gravity, the more the softer contact is; raise penalty_pa, set gravity_ramp_s, or begin with {SETTLE}",
         name(simulation, worst),
         100.0 * worst.value,
         100.0 * SPEED
