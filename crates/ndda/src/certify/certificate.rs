@@ -8,7 +8,9 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::chaos::Chaos;
-use super::extrapolate::{Behaviour, Estimate, estimate, estimate_of_coarse, estimate_of_coarsest};
+use super::extrapolate::{
+    Behaviour, Estimate, estimate, estimate_of_coarse, estimate_of_coarsest, root_mean_square,
+};
 use super::plan::{FINER, STIFFER};
 use super::quantities::{
     Kind, Quantity, common_rows, last_fifth, quantities, rounding, scales, unresolved_energy_j, values_of,
@@ -23,10 +25,6 @@ pub const SCHEMA: &str = "ndda.certificate/1";
 const MESH_ORDER: f64 = 1.0;
 /// The largest order in the size of elements, that of linear tetrahedra.
 const MOST_MESH_ORDER: f64 = 2.0;
-/// Error bar over the scale from which on a run is not accurate without a word.
-const WIDE: f64 = 0.01;
-/// Error bar over the scale up to which differences that do not fall are rounding.
-const NOTHING: f64 = 1e-7;
 /// The order in 1/k_n of the error of soft contact.
 const PENALTY_ORDER: f64 = 1.0;
 
@@ -116,8 +114,7 @@ pub struct Certified {
     pub own_error: f64,
     /// Contributions to the error bar.
     pub parts: Parts,
-    /// The largest value of its kind in the run of the shortest step: of a vector's components, or of all energies.
-    #[serde(default)]
+    /// The largest value of its kind in the run of the shortest step.
     pub scale: f64,
 }
 
@@ -199,7 +196,7 @@ pub fn certify(histories: &Histories, basis: &Basis) -> Vec<Certified> {
 /// The error of the time step, from three runs at the instants that they have in common.
 fn of_steps(quantity: &Quantity, runs: &[Vec<f64>; 3], theory: f64, floor: f64) -> Certified {
     let rows = runs[0].len();
-    let at = |row: usize| estimate([0, 1, 2].map(|k| runs[k][row]), theory, floor);
+    let at = |row| estimate([0, 1, 2].map(|k: usize| runs[k][row]), theory, floor);
     let estimates: Vec<Estimate> = (0..rows).map(at).collect();
     let largest = |some: &[Estimate]| some.iter().map(|e| e.error).fold(0.0, f64::max);
     let last = estimates.last().copied().unwrap_or_else(|| estimate([0.0; 3], theory, floor));
@@ -223,31 +220,7 @@ fn of_steps(quantity: &Quantity, runs: &[Vec<f64>; 3], theory: f64, floor: f64) 
     }
 }
 
-/// √(Σ e²/n) of the errors of some estimates.
-fn root_mean_square(some: &[Estimate]) -> f64 {
-    let largest = some.iter().map(|e| e.error).fold(0.0, f64::max);
-    if largest == 0.0 {
-        return 0.0;
-    }
-    // Relative to the largest, so that no square overflows.
-    let sum: f64 = some.iter().map(|e| (e.error / largest) * (e.error / largest)).sum();
-    largest * (sum / some.len() as f64).sqrt()
-}
-
 impl Certified {
-    /// Whether the error bar of the value at the shortest step, or else at the scene's own, is more than 1 % of the scale.
-    pub fn is_wide(&self, own: bool) -> bool {
-        let error = if own { self.own_error } else { self.error };
-        error > WIDE * self.scale
-    }
-
-    /// Differences that do not fall and are next to nothing are rounding that slip and contact have made larger.
-    fn forgive(&mut self) {
-        if self.behaviour == Behaviour::Spreads && self.largest_error <= NOTHING * self.scale {
-            self.behaviour = Behaviour::Rounding;
-        }
-    }
-
     /// Adds to the error of the time step.
     fn add(&mut self, more: f64) {
         self.parts.step += more;
