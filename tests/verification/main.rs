@@ -54,6 +54,7 @@ mod quiet;
 mod quiet_joints;
 mod quiet_oblique;
 mod random_impacts;
+mod random_wedges;
 mod release_of_initial_stress;
 mod restitution;
 mod rockfall;

@@ -1,5 +1,6 @@
 //! Every result of a scene with an error bar, from runs with steps that halve.
 
+mod bars;
 pub mod certificate;
 pub mod chaos;
 pub mod error;

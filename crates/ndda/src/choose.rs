@@ -152,7 +152,10 @@ impl Sizes {
             true => format!(" and loads of {:.1e} Pa", self.load_pa),
             false => String::new(),
         };
-        format!("{} of rock{loads}", metres(self.fall_m))
+        match (self.fall_m > 0.0, self.load_pa > 0.0) {
+            (false, true) => format!("loads of {:.1e} Pa", self.load_pa),
+            _ => format!("the weight of rock {} high{loads}", metres(self.fall_m)),
+        }
     }
 }
 

@@ -8,6 +8,7 @@ pub mod held;
 mod idle;
 pub mod lumped;
 pub mod memory;
+mod points;
 pub(crate) mod rim;
 pub mod rounding;
 pub mod size;

@@ -4,8 +4,9 @@ use std::path::{Path, PathBuf};
 
 use ndda_io::{OutputFolder, read};
 
-/// File of a factor of safety, folder beside it of the run that shows how blocks fail, and file of a rockfall.
+/// File of a factor of safety, of the state of rest that its trials begin from, folder beside it of the run that shows how blocks fail, and file of a rockfall.
 pub(crate) const SAFETY: &str = "safety.json";
+pub(crate) const REST: &str = "rest.ndda";
 pub(crate) const MECHANISM: &str = "mechanism";
 pub(crate) const ROCKFALL: &str = "rockfall.json";
 

@@ -8,6 +8,7 @@ mod changes;
 mod failing;
 mod film;
 mod free_blocks;
+mod kept;
 mod mechanism;
 mod remarks;
 mod report;
@@ -126,9 +127,25 @@ pub enum SafetyError {
     Rockfall,
     /// There is no strength that could be reduced.
     #[error(
-        "the scene has no friction, cohesion or tensile strength to reduce: give contact.friction, or use --by load or --by gravity"
+        "joints have no friction, cohesion or tensile strength that could be reduced, so blocks that can slide have a factor of safety of 0: \
+         give contact.friction a friction_deg above 0 or a cohesion_pa"
     )]
     NoStrength,
+    /// It moves, and there is no strength that could hold it.
+    #[error(
+        "the scene does not come to rest, and its joints have no friction, cohesion or tensile strength that could hold it ({source}): \
+         give contact.friction a friction_deg above 0 or a cohesion_pa, or hold blocks by supports"
+    )]
+    NotHeld {
+        /// Error of the solver.
+        source: StepError,
+    },
+    /// Neither weight nor loads.
+    #[error(
+        "nothing loads the blocks, so they stand whatever the strength of their joints is and have no factor of safety: {}",
+        crate::forecast::held::LOAD
+    )]
+    NoLoads,
     /// No loads.
     #[error(
         "the scene has no forces or tractions to multiply: give `forces` or `tractions`, or use --by strength"
@@ -254,7 +271,10 @@ pub fn make_folder(out: &Path, name: &str, anew: bool) -> Result<(), SafetyError
         return Err(SafetyError::OtherScene { folder: out.to_path_buf(), scene });
     }
     // An empty file is no earlier answer to go on from.
-    let forget = || if anew { std::fs::write(file(out), "") } else { Ok(()) };
+    let forget = || match anew {
+        true => kept::Kept::forget(out).and_then(|()| std::fs::write(file(out), "")),
+        false => Ok(()),
+    };
     std::fs::create_dir_all(out)
         .and_then(|()| forget())
         .map_err(|source| SafetyError::Folder { folder: out.to_path_buf(), source })

@@ -47,7 +47,7 @@ pub(crate) struct BlockReport {
 
 impl BlockReport {
     /// Everything in it, in one order.
-    fn parts(&mut self) -> ([&mut Vec3; 16], [&mut f64; 10], [&mut bool; 3]) {
+    fn parts(&mut self) -> ([&mut Vec3; 16], [&mut f64; 11], [&mut bool; 3]) {
         let Self {
             reaction,
             outside_torque,
@@ -78,6 +78,7 @@ impl BlockReport {
             touches,
             speed_m_s: fastest_m_s,
             has_friction,
+            contact_rate2: drive_rate2,
         } = drive;
         let of_block = [reaction, outside_torque, motion_impulse, orbital_impulse, impulse, impulse_moment];
         let of_parts =
@@ -94,6 +95,7 @@ impl BlockReport {
             contact_rate2,
             pressed_m_s2,
             fastest_m_s,
+            drive_rate2,
         ];
         let vectors = std::array::from_fn(|_| vectors.next().expect("sixteen of them"));
         (vectors, numbers, [is_held, touches, has_friction])
@@ -144,6 +146,8 @@ pub(crate) struct RigidForcing {
     pub speed_m_s: f64,
     /// Whether friction acts on it.
     pub has_friction: bool,
+    /// A bound of ω_c² of its contact [1/s²].
+    pub contact_rate2: f64,
 }
 
 /// Velocity that forces of unknown direction give a block [m/s].

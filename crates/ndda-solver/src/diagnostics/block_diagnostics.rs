@@ -4,6 +4,7 @@
 //! work of its forces on both blocks differs from the loss of its potential energy. The lighter block is affected: where two collide at v,
 //! an error of energy δE is one of its speed δv = δE/(m v), whatever the other weighs.
 
+mod rebounds;
 mod stages;
 mod start;
 
@@ -18,6 +19,7 @@ use crate::bodies::report::RigidForcing;
 use crate::diagnostics::creep::CreepDiagnostics;
 use crate::diagnostics::hops::Hops;
 use crate::diagnostics::many::each_of_many;
+use crate::diagnostics::rebound::Rebound;
 use crate::diagnostics::ringing::{Quadrature, Ringing};
 
 /// Part of ½ m V² that an error of V/100 is measured by where blocks meet at next to no speed: m v δv + ½ m δv².
@@ -65,6 +67,7 @@ struct BlockBalance {
     /// Errors left by vibration and jumps of forces.
     ringing: Ringing,
     hops: Hops,
+    rebound: Rebound,
 }
 
 /// Energy balances and diagnostics of all blocks.
@@ -248,22 +251,8 @@ impl BlockDiagnostics {
             let drive = drive_of(block);
             balance.ringing.add(step, drive);
             balance.hops.add(step.dt_s, drive);
+            balance.rebound.add(step.dt_s, drive);
         });
-    }
-
-    /// Most hops in a row that friction lets grow, and most short hops of a block that deforms. Those of rigid blocks are resolved; hops that rounding may have
-    /// made do not count, nor those that are slow beside the largest speed.
-    pub(crate) fn hops(&self, largest_m_s: f64, rounding_j: f64) -> (Worst, Worst) {
-        let (mut growing, mut short) = (Worst::default(), Worst::default());
-        for (block, (balance, scale)) in self.balances.iter().zip(&self.scales).enumerate() {
-            growing.take(f64::from(balance.hops.most()), block);
-            let (hops, speed_m_s) = balance.hops.short();
-            let counts = scale.deforms && speed_m_s > 0.5 * largest_m_s;
-            if counts && 0.5 * scale.mass_kg * speed_m_s * speed_m_s > rounding_j {
-                short.take(f64::from(hops), block);
-            }
-        }
-        (growing, short)
     }
 
     /// Largest error of a velocity for ringing, over a speed; what rounding may have done does not count.

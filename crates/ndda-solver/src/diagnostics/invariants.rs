@@ -49,6 +49,8 @@ pub struct Invariants {
     pub growing_hops: Worst,
     /// Short hops of a block that deforms: contact lost and soon regained, where friction acted and could stop the block.
     pub chattering_hops: Worst,
+    /// Speed that a sliding block gained by sticking while its contact rebounded, over the largest speed.
+    pub rebound_speed: Worst,
     /// |action + reaction| / |force| over the pairs.
     pub action_reaction: f64,
     /// smallest det F.

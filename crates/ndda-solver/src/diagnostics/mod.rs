@@ -8,5 +8,6 @@ pub(crate) mod invariants;
 pub(crate) mod lateral_drift;
 pub(crate) mod ledger;
 pub(crate) mod many;
+pub(crate) mod rebound;
 pub(crate) mod ringing;
 pub(crate) mod worst;

@@ -78,6 +78,7 @@ impl RigidForcing {
             touches,
             speed_m_s: report.speed_m_s,
             has_friction: context.friction_force.iter().any(|f| *f != Vec3::zeros()),
+            contact_rate2: report.contact_rate2,
         }
     }
 }

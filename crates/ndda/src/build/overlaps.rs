@@ -52,7 +52,7 @@ pub fn refusal(loaded: &LoadedScene, simulation: &mut Simulation) -> Result<Opti
         return Ok(same_place);
     }
     let message = listed(&simulation.blocks().names, &pairs);
-    let help = "move them apart, or let them come to rest before the run begins: `settle: ()`";
+    let help = format!("move them apart, or let them come to rest before the run begins: {}", settle(loaded));
     Ok(Some(loaded.diagnose_as(Code::Overlap, "blocks", message).with_help(help)))
 }
 
@@ -152,6 +152,14 @@ fn in_the_same_place(simulation: &Simulation) -> Option<Shared> {
     })
 }
 
+/// What brings a scene to rest; gravity has no ramp then.
+fn settle(loaded: &LoadedScene) -> &'static str {
+    match loaded.scene.gravity_ramp_s > 0.0 {
+        true => "`settle: ()` in place of gravity_ramp_s",
+        false => "`settle: ()`",
+    }
+}
+
 /// A warning for blocks that contact throws apart from where they are drawn, faster than errors of an accurate run may be.
 pub fn warning(loaded: &LoadedScene, simulation: &Simulation) -> Option<Diagnostic> {
     let thrown = simulation.invariants().drawn_overlap_m_s;
@@ -164,7 +172,7 @@ pub fn warning(loaded: &LoadedScene, simulation: &Simulation) -> Option<Diagnost
         "block `{name}` overlaps others as drawn, and contact throws it away at {:.2e} m/s",
         thrown.value
     );
-    let help = "move it, or let the scene come to rest before the run begins: `settle: ()`";
+    let help = format!("move it, or let the scene come to rest before the run begins: {}", settle(loaded));
     let mut found = loaded.diagnose_as(Code::Overlap, "blocks", message).with_help(help);
     found.severity = Severity::Warning;
     Some(found)

@@ -8,7 +8,9 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::chaos::Chaos;
-use super::extrapolate::{Behaviour, Estimate, estimate, estimate_of_coarse, estimate_of_coarsest};
+use super::extrapolate::{
+    Behaviour, Estimate, estimate, estimate_of_coarse, estimate_of_coarsest, root_mean_square,
+};
 use super::plan::{FINER, STIFFER};
 use super::quantities::{
     Kind, Quantity, common_rows, last_fifth, quantities, rounding, scales, unresolved_energy_j, values_of,
@@ -112,6 +114,8 @@ pub struct Certified {
     pub own_error: f64,
     /// Contributions to the error bar.
     pub parts: Parts,
+    /// The largest value of its kind in the run of the shortest step.
+    pub scale: f64,
 }
 
 /// Contributions to an error bar.
@@ -165,6 +169,8 @@ pub fn certify(histories: &Histories, basis: &Basis) -> Vec<Certified> {
         let tables = [coarse, middle, fine];
         let runs = [0, 1, 2].map(|k| values_of(tables[k], quantity, &rows[k]));
         let mut certified = of_steps(quantity, &runs, basis.order, floor);
+        certified.scale = scales[quantity.group];
+        certified.forgive();
         certified.add(unresolved(quantity.kind, lost_j, basis));
         let more = |tables: &[Table], part: fn([&[f64]; 3], usize, f64) -> f64| {
             refined(fine, tables, quantity, floor, part)
@@ -190,7 +196,7 @@ pub fn certify(histories: &Histories, basis: &Basis) -> Vec<Certified> {
 /// The error of the time step, from three runs at the instants that they have in common.
 fn of_steps(quantity: &Quantity, runs: &[Vec<f64>; 3], theory: f64, floor: f64) -> Certified {
     let rows = runs[0].len();
-    let at = |row: usize| estimate([0, 1, 2].map(|k| runs[k][row]), theory, floor);
+    let at = |row| estimate([0, 1, 2].map(|k: usize| runs[k][row]), theory, floor);
     let estimates: Vec<Estimate> = (0..rows).map(at).collect();
     let largest = |some: &[Estimate]| some.iter().map(|e| e.error).fold(0.0, f64::max);
     let last = estimates.last().copied().unwrap_or_else(|| estimate([0.0; 3], theory, floor));
@@ -210,18 +216,8 @@ fn of_steps(quantity: &Quantity, runs: &[Vec<f64>; 3], theory: f64, floor: f64) 
         own_value: value(0),
         own_error: (value(0) - tends_to).abs() + error,
         parts: Parts { step: error, mesh: None, penalty: None },
+        scale: 0.0,
     }
-}
-
-/// √(Σ e²/n) of the errors of some estimates.
-fn root_mean_square(some: &[Estimate]) -> f64 {
-    let largest = some.iter().map(|e| e.error).fold(0.0, f64::max);
-    if largest == 0.0 {
-        return 0.0;
-    }
-    // Relative to the largest, so that no square overflows.
-    let sum: f64 = some.iter().map(|e| (e.error / largest) * (e.error / largest)).sum();
-    largest * (sum / some.len() as f64).sqrt()
 }
 
 impl Certified {

@@ -123,6 +123,17 @@ pub fn estimate_of_coarsest(values: [f64; 3], ratio: f64, theory: f64, rounding:
     estimate_of_coarse(values[0], values[1], ratio, order.clamp(LEAST_ORDER, theory)) + rounding
 }
 
+/// √(Σ e²/n) of the errors of some estimates.
+pub fn root_mean_square(some: &[Estimate]) -> f64 {
+    let largest = some.iter().map(|e| e.error).fold(0.0, f64::max);
+    if largest == 0.0 {
+        return 0.0;
+    }
+    // Relative to the largest, so that no square overflows.
+    let sum: f64 = some.iter().map(|e| (e.error / largest) * (e.error / largest)).sum();
+    largest * (sum / some.len() as f64).sqrt()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use ndda_io::summary::LabelWord;
+
 use super::certificate::{Certificate, Certified};
 use super::extrapolate::Behaviour;
 use super::quantities::{BLOCK, named};
@@ -10,19 +12,22 @@ use crate::numbers::counted;
 
 /// Blocks that are shown, those of the largest relative errors, unless others are asked for.
 const MOST_BLOCKS: usize = 3;
+/// Place of the run of the shortest step, after those of the scene's own step and of half of it.
+const SHORTEST: usize = 2;
 /// Rows that are shown.
 pub const MOST_ROWS: usize = 60;
 
 /// The certificate as text.
 pub fn text(certificate: &Certificate, of: &[String]) -> String {
     let mut text = format!("{}: {}\n", certificate.scene, certificate.title);
-    for run in &certificate.runs {
+    for (place, run) in certificate.runs.iter().enumerate() {
         let time = run.processor_s.map_or(String::new(), |s| format!(", {s:.2} s of processor time"));
         let (name, steps, step_s) = (&run.name, run.steps, run.step_s);
         let _ = writeln!(
             text,
             "{name}: {steps} steps of {step_s:e} s in {:.2} s{time}; {}",
-            run.wall_s, run.label
+            run.wall_s,
+            label(certificate, place)
         );
     }
     let (shown, left_out) = shown(certificate, of);
@@ -46,6 +51,19 @@ pub fn text(certificate: &Certificate, of: &[String]) -> String {
     });
     let _ = writeln!(text, "time spent: {:.2} s in {} runs", certificate.wall_s, certificate.runs.len());
     text
+}
+
+/// The label of a run; where it is accurate and error bars of the run say that it may not be, with their number.
+fn label(certificate: &Certificate, place: usize) -> String {
+    let label = &certificate.runs[place].label;
+    // The runs of finer meshes, of stiffer contact and of the twin have no bars of their own.
+    let is_wide = |quantity: &&Certified| quantity.is_wide(place < SHORTEST);
+    let wide = certificate.quantities.iter().filter(is_wide).count();
+    if place > SHORTEST || wide == 0 || *label != LabelWord::Accurate.as_str() {
+        return label.clone();
+    }
+    let (all, bars) = (certificate.quantities.len(), if wide == 1 { "error bar" } else { "error bars" });
+    format!("{label} by its checks, but {wide} of {all} {bars} above 1 % of the largest value")
 }
 
 /// The quantities that are shown, and how many are not.

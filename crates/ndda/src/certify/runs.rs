@@ -233,8 +233,12 @@ fn remark(certificate: &mut Certificate, plan: &Plan, wanted: &Wanted, summary: 
     let (all, spread) = (certificate.quantities.len(), spread);
     if spread > 0 && certificate.chaos.is_none() {
         say(format!(
-            "{spread} of {all} quantities do not converge at these steps; their error is three times the largest difference. \
+            "{spread} of {all} quantities {} three times the largest difference. \
              Shorter steps may resolve them: --set time.step_s={:e}",
+            match spread {
+                1 => "does not converge at these steps; its error is",
+                _ => "do not converge at these steps; their error is",
+            },
             plan.step_s(2)
         ));
     }

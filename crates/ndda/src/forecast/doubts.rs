@@ -7,6 +7,7 @@ use ndda_solver::BodyKind;
 use ndda_solver::Simulation;
 
 use super::idle;
+use super::points;
 use super::step::Advice;
 use crate::bolt_report::BoltReports;
 use crate::build;
@@ -27,6 +28,7 @@ pub fn doubts(scene: &Scene, simulation: &Simulation, advice: Option<&Advice>, f
     doubts.extend(coarse.map(|found| found.reason));
     doubts.extend(BoltReports::new(simulation).doubts(|name| build::bolts::entry(scene, name)));
     doubts.extend(idle::findings(scene, simulation.blocks(), folder));
+    doubts.extend(points::findings(scene, simulation.blocks()));
     let falls = scene.gravity_m_s2 != [0.0; 3];
     doubts.extend(ramp(scene).filter(|_| falls));
     let Some(Contact::Potential { penalty_pa, potential, .. }) = &scene.contact else { return doubts };

@@ -3,7 +3,7 @@
 use ndda_io::code::Code;
 use ndda_io::diagnostic::{Diagnostic, Severity};
 use ndda_io::read::LoadedScene;
-use ndda_io::scene::Scene;
+use ndda_io::scene::{Block, Hold, Scene};
 use ndda_mesh::BlockSet;
 
 use super::rim;
@@ -32,6 +32,34 @@ fn nothing_is(scene: &Scene, blocks: &BlockSet) -> bool {
     scene.gravity_m_s2 != [0.0; 3] && blocks.len() > 1 && !held && all_move()
 }
 
+/// What is said where nothing loads the blocks.
+const NOTHING_LOADS: &str =
+    "nothing but overlaps loads the blocks: there is no gravity, force, pressure, stress, speed or motion";
+/// Its cure.
+pub const LOAD: &str = "give gravity_m_s2, as (0, 0, -9.81), or another load";
+
+/// Whether nothing loads or moves the blocks of a scene, so that those which touch stay where they are.
+pub fn nothing_loads(scene: &Scene) -> bool {
+    let zero = [0.0; 3];
+    let rests = |block: &Block| {
+        block.velocity_m_s == zero && block.spin_rad_s == zero && block.initial_stress_pa.is_none()
+    };
+    let moves = |hold: &Hold| !matches!(hold, Hold::Fixed | Hold::Normal | Hold::Direction(_));
+    let is_pushed = scene.forces.iter().any(|load| load.force_n != zero)
+        || scene.tractions.iter().any(|load| load.traction_pa != zero)
+        || !scene.water.is_empty()
+        || !scene.blasts.is_empty()
+        || scene.in_situ.is_some()
+        || scene.bolts.iter().any(|bolt| bolt.pretension_n != 0.0);
+    scene.gravity_m_s2 == zero
+        && !is_pushed
+        && scene.blocks.iter().all(rests)
+        && !scene.supports.iter().any(|support| moves(&support.hold))
+        && scene.quiet.iter().all(|quiet| quiet.incident.is_empty())
+        && scene.stages.is_empty()
+        && scene.rockfall.is_none()
+}
+
 /// Warnings about what holds the blocks of a scene: path, message and cure.
 fn found(scene: &Scene, blocks: &BlockSet) -> Vec<(String, String, &'static str)> {
     let mut found = Vec::new();
@@ -41,6 +69,9 @@ fn found(scene: &Scene, blocks: &BlockSet) -> Vec<(String, String, &'static str)
     }
     if nothing_is(scene, blocks) {
         found.push((list.to_string(), NOTHING.to_string(), HOLD));
+    }
+    if nothing_loads(scene) && something_moves(scene, blocks) {
+        found.push(("gravity_m_s2".to_string(), NOTHING_LOADS.to_string(), LOAD));
     }
     let rims = rim::leaving(scene, blocks);
     found
@@ -56,7 +87,8 @@ pub fn sentences(scene: &Scene, blocks: &BlockSet) -> Vec<String> {
 /// The same at their places in the scene.
 pub fn warnings(loaded: &LoadedScene, blocks: &BlockSet) -> Vec<Diagnostic> {
     let warning = |(path, message, cure): (String, String, &str)| {
-        let code = if message == NOTHING_MOVES { Code::NoEffect } else { Code::NotHeld };
+        let idle = [NOTHING_MOVES, NOTHING_LOADS].contains(&message.as_str());
+        let code = if idle { Code::NoEffect } else { Code::NotHeld };
         let found = loaded.diagnose_as(code, &path, message).with_help(cure);
         Diagnostic { severity: Severity::Warning, ..found }
     };
@@ -94,6 +126,23 @@ mod tests {
         assert_eq!(codes("", ""), ["not-held"]);
         assert_eq!(codes("body: Fixed", ""), Vec::<String>::new());
         assert_eq!(codes("", "supports: [(block: \"lower\", on: All, hold: Fixed)]"), Vec::<String>::new());
+    }
+
+    #[test]
+    fn blocks_that_nothing_loads_are_warned_of_and_those_that_move_by_themselves_are_not() {
+        let text = |more: &str| {
+            format!(
+                "(title: \"two\", time: (step_s: 1e-4, end_s: 1e-3),
+                materials: [(name: \"rock\", density_kg_m3: 2600, young_pa: 20e9, poisson: 0.25)],
+                blocks: [(name: \"a\", material: \"rock\", shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), {more})])"
+            )
+        };
+        let messages = |more: &str| -> Vec<String> {
+            let warnings = Model::from_text(&text(more)).unwrap().loaded.warnings;
+            warnings.into_iter().map(|warning| warning.message).collect()
+        };
+        assert_eq!(messages(""), [super::NOTHING_LOADS]);
+        assert_eq!(messages("velocity_m_s: (1, 0, 0)"), Vec::<String>::new());
     }
 
     #[test]

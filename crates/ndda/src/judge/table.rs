@@ -41,11 +41,16 @@ pub fn ending(summary: &Summary) -> String {
         |(_, verdict): &&(String, Verdict)| matches!(verdict.verdict, Judgement::Warn | Judgement::Fail);
     let bad: Vec<_> = summary.verdicts.0.iter().filter(failed).collect();
     let passed = summary.verdicts.0.iter().filter(|(_, v)| v.is_passed()).count();
+    // Numbers that the table of all checks shows, too, without a limit to pass or before they can be judged.
+    let shown = match summary.verdicts.0.len() - passed - bad.len() {
+        0 => String::new(),
+        others => format!(" and {others} only shown"),
+    };
     if bad.is_empty() && passed > 0 {
-        text.push_str(&format!("{passed} checks passed\n"));
+        text.push_str(&format!("{passed} checks passed{shown}\n"));
     } else if !bad.is_empty() {
         text.push_str(&format!(
-            "{passed} checks passed, {} did not:\n{}\n",
+            "{passed} checks passed{shown}, {} did not:\n{}\n",
             bad.len(),
             verdict_table(bad.into_iter())
         ));

@@ -6,7 +6,8 @@ use ndda_solver::{Simulation, Worst};
 mod vibration;
 
 use vibration::{
-    arriving_waves, chatter, contact_damping, creep, energy_from_damping, hops, ringing, within_a_step,
+    SETTLE, arriving_waves, chatter, contact_damping, creep, energy_from_damping, hops, rebound, ringing,
+    within_a_step,
 };
 
 /// Energy gained or lost for good over the largest energy. Speeds are as its root: twice the 1 % that they may be off.
@@ -84,6 +85,7 @@ fn entries(simulation: &Simulation) -> Vec<Entry> {
     entries.extend(creep(simulation));
     entries.push(hops(simulation));
     entries.extend(chatter(simulation));
+    entries.extend(rebound(simulation));
     entries.extend(contact(simulation));
     entries.extend(lateral_drift(simulation));
     let verdict = if upright > 0.0 { Judgement::Pass } else { fail };
@@ -180,7 +182,7 @@ fn drawn_overlaps(simulation: &Simulation) -> Option<Entry> {
     let thrown = simulation.invariants().drawn_overlap_m_s;
     let part = thrown.value / simulation.speed_scale_m_s();
     let reason = format!(
-        "block `{}` overlaps others as drawn, and contact throws it away at {:.2e} m/s, {:.1} % of the largest speed, limit {:.0} %: move it, or let the scene come to rest first, `settle: ()`",
+        "block `{}` overlaps others as drawn, and contact throws it away at {:.2e} m/s, {:.1} % of the largest speed, limit {:.0} %: move it, or let the scene come to rest first, {SETTLE}",
         name(simulation, thrown),
         thrown.value,
         100.0 * part,

@@ -18,6 +18,8 @@ pub(crate) const MOVED: f64 = 0.01;
 const RESTS: f64 = 0.01;
 /// Slower motion is rounding [m/s].
 const SLOWEST_M_S: f64 = 1e-12;
+/// It rests as well if no point of it has gone farther than this part of the distance from its mass centre to its farthest node, but for one that accelerates.
+const STAYS: f64 = 1e-6;
 /// It accelerates if it moves at more than this part of that.
 const ACCELERATES: f64 = 0.99;
 
@@ -89,10 +91,14 @@ impl LargestMotions {
         let fastest_m_s = self.fastest_m_s.get(block.index()).copied().unwrap_or(0.0).max(speed_m_s);
         let is_slow = speed_m_s <= RESTS * fastest_m_s || fastest_node_m_s(simulation, block) < SLOWEST_M_S;
         // A boulder at the top of its flight is slow, too.
-        let course = if is_slow && !simulation.falls_freely(block) {
+        let stays = distance_m < STAYS * radius_m(&simulation.shape(block).operator);
+        let flies = simulation.falls_freely(block);
+        let course = if is_slow && !flies {
             Course::AtRest
         } else if speed_m_s >= ACCELERATES * fastest_m_s {
             Course::Accelerating
+        } else if stays && !flies {
+            Course::AtRest
         } else {
             Course::Moving
         };

@@ -76,6 +76,14 @@ pub fn weaken(scene: &mut Scene, factor: f64) {
     }
 }
 
+/// Whether joints have any strength.
+pub fn has_strength(scene: &Scene) -> bool {
+    let holds = |f: &&mut Friction| {
+        f.roughness.is_some() || f.friction_deg > 0.0 || f.cohesion_pa > 0.0 || f.tension_pa > 0.0
+    };
+    frictions(&mut scene.clone()).iter().any(holds)
+}
+
 /// Whether all friction of a scene is by shear springs.
 pub fn has_springs_only(scene: &Scene) -> bool {
     let frictions = &mut scene.clone();
@@ -126,14 +134,8 @@ impl Question {
     /// [`SafetyError`] that names what is missing.
     pub fn check(&self, scene: &mut Scene) -> Result<(), SafetyError> {
         match self {
-            Self::Strength => {
-                let holds = |f: &&mut Friction| {
-                    let rough = f.roughness.is_some();
-                    rough || f.friction_deg > 0.0 || f.cohesion_pa > 0.0 || f.tension_pa > 0.0
-                };
-                let found = frictions(scene).iter().any(holds);
-                if found { Ok(()) } else { Err(SafetyError::NoStrength) }
-            }
+            Self::Strength if has_strength(scene) => Ok(()),
+            Self::Strength => Err(SafetyError::NoStrength),
             Self::Load if scene.forces.is_empty() && scene.tractions.is_empty() => Err(SafetyError::NoLoad),
             Self::Load => Ok(()),
             Self::Gravity { towards } => {

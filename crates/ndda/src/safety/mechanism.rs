@@ -27,6 +27,9 @@ const SUMMED: usize = 50;
 /// Sine of the angle by which a direction may leave a plane that a block slides on.
 const ALONG: f64 = 0.2;
 
+/// Dip below which a plane is level \[°\]: 0.0° as it is written.
+const LEVEL_DEG: f64 = 0.05;
+
 /// How a block fails.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -77,7 +80,11 @@ impl fmt::Display for Plane {
             Some(joint) => write!(f, "joint `{joint}`")?,
             None => write!(f, "`{}`", self.on)?,
         }
-        write!(f, " ({:.1}°/{:.1}°)", self.dip_deg, self.dip_direction_deg)
+        // A level plane dips nowhere.
+        match self.dip_deg < LEVEL_DEG {
+            true => f.write_str(" (level)"),
+            false => write!(f, " ({:.1}°/{:.1}°)", self.dip_deg, self.dip_direction_deg),
+        }
     }
 }
 
@@ -344,6 +351,12 @@ mod tests {
         let straight = described(&[(normal, 1e5)], 0.1 * down, 1e-4 * normal);
         assert_eq!(words(&[straight]), "`slope`: sliding on joint `J1` (45.0°/90.0°)");
         assert_eq!(described(&[(normal, 1e5)], 0.01 * down, 0.1 * Vec3::y()).kind, Kind::Toppling);
+    }
+
+    #[test]
+    fn a_level_plane_has_no_dip_direction() {
+        let sliding = described(&[(Vec3::new(1e-5, 0.0, 1.0), 1e5)], Vec3::x(), Vec3::zeros());
+        assert_eq!(words(&[sliding]), "`slope`: sliding on joint `J1` (level)");
     }
 
     #[test]

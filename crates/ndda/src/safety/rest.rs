@@ -11,6 +11,7 @@ use ndda_mesh::Vec3;
 use ndda_solver::{Settle, Settled, Simulation, StepError};
 
 use super::free_blocks::{Moved, free};
+use super::kept::Kept;
 use super::trial::Start;
 use super::{SafetyError, Watch, changes};
 use crate::Model;
@@ -28,15 +29,61 @@ const FRICTION_TOLERANCE: f64 = 1e-4;
 ///
 /// Blocks that come to rest elsewhere, a toe that slides out until it lies on the ground, did not stand: the scene is brought to rest with more strength. Where that
 /// holds them back little, the largest is tried at once, and only where that does not hold them either do they count as being at rest; [`Start::moved`] names them.
+///
+/// The state is kept in the folder of the answer, from which the next call takes it.
 pub fn settled(loaded: &LoadedScene, folder: &Path, watch: &Watch) -> Result<(Start, f64), SafetyError> {
+    if let Some(kept) = watch.out.and_then(|out| Kept::read(out, &loaded.scene))
+        && let Some(known) = known(kept, loaded, folder, watch)?
+    {
+        return Ok(known);
+    }
+    let (start, strength) = found(loaded, folder, watch)?;
+    if let Some(out) = watch.out {
+        Kept::write(out, &loaded.scene, &start, strength)?;
+    }
+    Ok((start, strength))
+}
+
+/// The state that an earlier call found; none where it is of other blocks.
+fn known(
+    kept: Kept,
+    loaded: &LoadedScene,
+    folder: &Path,
+    watch: &Watch,
+) -> Result<Option<(Start, f64)>, SafetyError> {
+    let mut changed = loaded.clone();
+    changes::weaken(&mut changed.scene, 1.0 / kept.strength);
+    let softest = changes::shear_stiffness_pa_m(&mut changed.scene);
+    let gravity = Vec3::from(changed.scene.gravity_m_s2);
+    let mut model = Model::resuming_with(changed, folder, choices())?;
+    if model.simulation.restore(kept.snapshot).is_err() {
+        return Ok(None);
+    }
+    warn(&model, watch);
+    let start = Start::new(&mut model.simulation, gravity, softest);
+    let start = start.map_err(|source| SafetyError::NotSettled { strength: kept.strength, source })?;
+    let is_same = start.blocks_crc32 == kept.blocks_crc32;
+    Ok(is_same.then_some((Start { moved: kept.moved, ..start }, kept.strength)))
+}
+
+/// Says what nothing holds.
+fn warn(model: &Model, watch: &Watch) {
+    let not_held = model.loaded.warnings.iter().filter(|warning| warning.code == Code::NotHeld);
+    not_held.for_each(|warning| (watch.tell)(&format!("warning: {}", warning.message)));
+}
+
+fn found(loaded: &LoadedScene, folder: &Path, watch: &Watch) -> Result<(Start, f64), SafetyError> {
     let (mut failed, mut elsewhere): (_, Option<(Start, f64)>) = (None, None);
     let mut is_hopeless = false;
-    for strength in STRENGTHS {
+    // Nothing times 32 is nothing.
+    let has_strength = changes::has_strength(&loaded.scene);
+    let strengths = if has_strength { &STRENGTHS[..] } else { &STRENGTHS[..1] };
+    for &strength in strengths {
         if is_hopeless && strength < STRONGEST {
             continue;
         }
         // The last chance of a scene that has never come to rest has all the steps that it asks for.
-        let is_last = strength == STRONGEST && elsewhere.is_none();
+        let is_last = (strength == STRONGEST || !has_strength) && elsewhere.is_none();
         let mut changed = loaded.clone();
         changes::weaken(&mut changed.scene, 1.0 / strength);
         let softest = changes::shear_stiffness_pa_m(&mut changed.scene);
@@ -46,8 +93,7 @@ pub fn settled(loaded: &LoadedScene, folder: &Path, watch: &Watch) -> Result<(St
             if is_last { settle.most_steps } else { settle.most_steps.min(most_steps(&changed.scene)) };
         let model = Model::with(changed, folder, choices())?;
         if strength == STRENGTHS[0] {
-            let not_held = model.loaded.warnings.iter().filter(|warning| warning.code == Code::NotHeld);
-            not_held.for_each(|warning| (watch.tell)(&format!("warning: {}", warning.message)));
+            warn(&model, watch);
         }
         let mut simulation = model.simulation;
         if free(&simulation).next().is_none() {
@@ -72,6 +118,7 @@ pub fn settled(loaded: &LoadedScene, folder: &Path, watch: &Watch) -> Result<(St
                 }
             }
             Ok(Rest::Interrupted) => return Err(SafetyError::Interrupted),
+            Err(source) if !has_strength => return Err(SafetyError::NotHeld { source }),
             Err(source) => failed = Some(SafetyError::NotSettled { strength, source }),
         }
     }

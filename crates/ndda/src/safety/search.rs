@@ -5,7 +5,7 @@ mod next;
 
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::time::Instant;
 
 use ndda_io::read::LoadedScene;
@@ -20,6 +20,7 @@ use super::{
     film, mechanism, remarks, write,
 };
 use crate::Model;
+use crate::forecast::held::nothing_loads;
 use crate::numbers::counted;
 use next::bracket;
 
@@ -57,6 +58,8 @@ pub struct Search<'a> {
     answer: Mutex<Safety>,
     /// Trials that were repeated with less at a time, or pushed.
     repeated: AtomicUsize,
+    /// Bits of the smallest factor at which blocks have failed, infinite so far.
+    fails_at: AtomicU64,
 }
 
 impl<'a> Search<'a> {
@@ -76,6 +79,9 @@ impl<'a> Search<'a> {
         }
         let mut loaded = loaded.clone();
         loaded.scene = changes::at_rest(&loaded.scene);
+        if nothing_loads(&loaded.scene) {
+            return Err(SafetyError::NoLoads);
+        }
         plan.by.check(&mut loaded.scene)?;
         if !matches!(loaded.scene.contact, Some(Contact::Potential { .. })) {
             return Err(SafetyError::NoContact);
@@ -128,6 +134,7 @@ impl<'a> Search<'a> {
             known_mechanism,
             answer: Mutex::new(answer),
             repeated: AtomicUsize::new(0),
+            fails_at: AtomicU64::new(f64::INFINITY.to_bits()),
         })
     }
 
@@ -217,13 +224,37 @@ impl<'a> Search<'a> {
                     self.keep(known.clone());
                     Ok(())
                 }
-                None => self.try_factor(factor, &self.start.snapshot, &failing, before_s).map(drop),
+                None if self.is_settled_below(factor) => Ok(()),
+                None => match self.try_factor(factor, &self.start.snapshot, &failing, before_s) {
+                    Err(SafetyError::Interrupted) if self.is_settled_below(factor) => Ok(()),
+                    tried => tried.map(drop),
+                },
             };
             wanted.par_iter().map(run).collect::<Result<Vec<()>, SafetyError>>()?;
+            self.forget_beyond(&wanted);
         }
     }
 
+    /// Whether a trial at a smaller factor has failed, so that this one cannot change the answer.
+    fn is_settled_below(&self, factor: f64) -> bool {
+        !self.watch.stop.load(Ordering::Relaxed)
+            && f64::from_bits(self.fails_at.load(Ordering::Relaxed)) < factor
+    }
+
+    /// Takes out those of some trials that were side by side with a smaller one that failed: whether they came to their end depends on the number of threads.
+    fn forget_beyond(&self, tried: &[f64]) {
+        let mut answer = self.answer.lock().expect("no trial panics");
+        let fails = |trial: &&Trial| trial.state == State::Fails && tried.contains(&trial.factor);
+        let Some(first) = answer.trials.iter().find(fails).map(|trial| trial.factor) else { return };
+        answer.trials.retain(|trial| trial.factor <= first || !tried.contains(&trial.factor));
+        answer.factor_of_safety = bracket(&answer.trials);
+    }
+
     fn keep(&self, trial: Trial) {
+        if trial.state == State::Fails {
+            // Positive numbers have the order of their bits.
+            self.fails_at.fetch_min(trial.factor.to_bits(), Ordering::Relaxed);
+        }
         let mut answer = self.answer.lock().expect("no trial panics");
         answer.trials.push(trial);
         answer.trials.sort_by(|a, b| a.factor.total_cmp(&b.factor));
@@ -255,8 +286,12 @@ impl<'a> Search<'a> {
         before_s: f64,
     ) -> Result<Tried, SafetyError> {
         let mut model = self.model(factor, from)?;
-        let trial =
-            self.course(failing).run(&mut model.simulation, factor).ok_or(SafetyError::Interrupted)?;
+        // Loads that grow by strides are taken back where they were too large.
+        let is_settled = || !self.by.changes_loads() && self.is_settled_below(factor);
+        let trial = self
+            .course(failing, &is_settled)
+            .run(&mut model.simulation, factor)
+            .ok_or(SafetyError::Interrupted)?;
         (self.watch.tell)(&format!(
             "F = {factor:.4}: {}, {} ({} steps, {:.1} s)",
             super::report::state(trial.state),
@@ -305,13 +340,17 @@ impl<'a> Search<'a> {
         }
     }
 
-    fn course<'b>(&'b self, failing: &'b [BlockVelocity]) -> Course<'b> {
+    fn course<'b>(
+        &'b self,
+        failing: &'b [BlockVelocity],
+        is_settled: &'b (dyn Fn() -> bool + Sync),
+    ) -> Course<'b> {
         let (start, error, stop) = (&self.start, self.plan.error.min(COARSEST), self.watch.stop);
         let tolerance = self.loaded.scene.settle.unwrap_or_default().tolerance;
         let leans = self.by.changes_loads();
         let settle_tolerance = (leans || changes::has_springs_only(&self.loaded.scene)).then_some(tolerance);
         let has_cohesion = changes::has_cohesion(&self.loaded.scene);
-        Course { start, settle_tolerance, leans, has_cohesion, error, failing, stop }
+        Course { start, settle_tolerance, leans, has_cohesion, error, failing, stop, is_settled }
     }
 
     /// How blocks fail at the upper end of the bracket: that trial once more, with its contacts.
@@ -326,8 +365,10 @@ impl<'a> Search<'a> {
         let mut model = self.model(factor, &from)?;
         model.simulation.watch_contacts(true);
         let failing = self.failing();
-        let trial =
-            self.course(&failing).run(&mut model.simulation, factor).ok_or(SafetyError::Interrupted)?;
+        let trial = self
+            .course(&failing, &|| false)
+            .run(&mut model.simulation, factor)
+            .ok_or(SafetyError::Interrupted)?;
         let found = mechanism::of(&mut model, &self.start.position);
         if let Some(out) = self.watch.out {
             film::record(self.model(factor, &from)?, &trial, out, self.watch.stop)?;

@@ -189,6 +189,8 @@ pub struct Course<'a> {
     pub failing: &'a [BlockVelocity],
     /// Raised when somebody asks to end.
     pub stop: &'a AtomicBool,
+    /// Whether the answer no longer depends on this trial.
+    pub is_settled: &'a (dyn Fn() -> bool + Sync),
 }
 
 impl Course<'_> {
@@ -203,7 +205,7 @@ impl Course<'_> {
         ((time_s / step_s).ceil() as u64).max(FEWEST_STEPS)
     }
 
-    /// Runs a trial at a factor; none if somebody asked to end.
+    /// Runs a trial at a factor; none if somebody asked to end, or the answer no longer depends on it.
     pub fn run(&self, simulation: &mut Simulation, factor: f64) -> Option<Trial> {
         let began = Instant::now();
         let begun = simulation.state().position.clone();
@@ -255,7 +257,7 @@ impl Course<'_> {
         let elastic_m = self.start.elastic_m;
         for window in 1..=LONGEST * WINDOWS {
             while simulation.state().step - first < window * steps / WINDOWS {
-                if self.stop.load(Ordering::Relaxed) {
+                if self.stop.load(Ordering::Relaxed) || (self.is_settled)() {
                     return None;
                 }
                 if let Err(error) = simulation.step_with_local_damping(&mut damping) {
@@ -370,7 +372,7 @@ impl Course<'_> {
         } else {
             let reason = match watched.beyond(far_m) {
                 Some(_) => format!("`{name}` slows to a stop after {gone}"),
-                None => format!("no block moves on in {time_s:.3} s; `{name}` moved farthest, by {gone}"),
+                None => format!("all are at rest after {time_s:.3} s; `{name}` moved farthest, by {gone}"),
             };
             (State::Stands, reason)
         }

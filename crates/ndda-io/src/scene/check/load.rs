@@ -43,8 +43,8 @@ impl Check<'_> {
                 self.misfit("settle.mass_scaling", "contact at the end of the step needs true masses", help);
             }
             if scene.gravity_ramp_s > 0.0 {
-                let help = "leave out one of the two";
-                self.misfit("gravity_ramp_s", "a scene settles under its full weight", help);
+                let help = "leave out gravity_ramp_s, so that the run begins at rest under full gravity; or leave out settle";
+                self.misfit("gravity_ramp_s", "a scene settles under its full weight, without a ramp", help);
             }
         }
         for (i, force) in scene.forces.iter().enumerate() {

@@ -16,11 +16,14 @@ const MOST_GROWING: f64 = 7.0;
 /// Short hops of a sliding block: runs that agree with closed forms have up to 11, runs that do not have 21 and more.
 const MOST_CHATTERING: f64 = 15.0;
 
+/// How a run begins at rest; gravity has no ramp then.
+pub(super) const SETTLE: &str = "`settle: ()` (in place of gravity_ramp_s)";
+
 /// Whether blocks creep on shear springs while contact rings.
 pub(super) fn creep(simulation: &Simulation) -> [Entry; 2] {
     let worst = simulation.invariants();
     let (place, speed) = (worst.creep_place, worst.creep_speed);
-    let cure = "because vibrating contact makes its shear springs slip: give the contact a restitution below 1, add settle: (), set gravity_ramp_s, or remove shear_penalty_pa_m";
+    let cure = "because vibrating contact makes its shear springs slip: give the contact a restitution below 1, add `settle: ()` or gravity_ramp_s, one of the two, or remove shear_penalty_pa_m";
     let where_it_is = format!(
         "block `{}` crept by {:.2} of its smallest element size, limit {PLACE}, {cure}",
         name(simulation, place),
@@ -55,12 +58,25 @@ pub(super) fn chatter(simulation: &Simulation) -> Option<Entry> {
     let worst = simulation.invariants().chattering_hops;
     let reason = format!(
         "block `{}` lost contact and regained it {} times while friction acted on it, limit {MOST_CHATTERING}: how far it slides depends on \
-         vibrations of contact, which are hardly damped; give contacts a restitution of 0.5, or begin with settle: ()",
+         vibrations of contact, which are hardly damped; give contacts a restitution of 0.5, or begin with {SETTLE}",
         name(simulation, worst),
         worst.value
     );
     let check = "contact lost and regained while sliding";
     (worst.value > 0.0).then(|| warned(check, worst.value, MOST_CHATTERING, reason))
+}
+
+/// Whether rebounds of contact made a block slide faster; shown only beyond the limit.
+pub(super) fn rebound(simulation: &Simulation) -> Option<Entry> {
+    let worst = simulation.invariants().rebound_speed;
+    let reason = format!(
+        "block `{}` may slide too fast by about {:.1} % of the largest speed, limit {:.0} %: it stuck and slipped while its contact rebounded from gravity, the more the softer contact is; raise penalty_pa, set gravity_ramp_s, or begin with {SETTLE}",
+        name(simulation, worst),
+        100.0 * worst.value,
+        100.0 * SPEED
+    );
+    let check = "speed gained in rebounds of contact / largest speed";
+    (worst.value > SPEED).then(|| warned(check, worst.value, SPEED, reason))
 }
 
 /// Whether steps resolve the damping of contact; said only where they leave something out.

@@ -1,0 +1,33 @@
+//! The worst hops and rebounds of all blocks.
+
+use super::BlockDiagnostics;
+use crate::diagnostics::worst::Worst;
+
+impl BlockDiagnostics {
+    /// Most hops in a row that friction lets grow, and most short hops of a block that deforms. Those of rigid blocks are resolved; hops that rounding may have
+    /// made do not count, nor those that are slow beside the largest speed.
+    pub(crate) fn hops(&self, largest_m_s: f64, rounding_j: f64) -> (Worst, Worst) {
+        let (mut growing, mut short) = (Worst::default(), Worst::default());
+        for (block, (balance, scale)) in self.balances.iter().zip(&self.scales).enumerate() {
+            growing.take(f64::from(balance.hops.most()), block);
+            let (hops, speed_m_s) = balance.hops.short();
+            let counts = scale.deforms && speed_m_s > 0.5 * largest_m_s;
+            if counts && 0.5 * scale.mass_kg * speed_m_s * speed_m_s > rounding_j {
+                short.take(f64::from(hops), block);
+            }
+        }
+        (growing, short)
+    }
+
+    /// Largest speed that rebounds of contact have added to a block that slides, over a speed; what rounding may have done does not count.
+    pub(crate) fn rebound(&self, speed_m_s: f64, rounding_j: f64) -> Worst {
+        let mut worst = Worst::default();
+        for (block, (balance, scale)) in self.balances.iter().zip(&self.scales).enumerate() {
+            let gained_m_s = balance.rebound.gained_m_s();
+            if 0.5 * scale.mass_kg * gained_m_s * gained_m_s > rounding_j {
+                worst.take(gained_m_s / speed_m_s, block);
+            }
+        }
+        worst
+    }
+}
