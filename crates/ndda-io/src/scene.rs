@@ -47,33 +47,29 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 pub use blast::{Blast, BlastPressure, BlastWall};
-pub use block::{Block, Body, Stress, Turn};
-pub use bolt::{Bolt, BoltPlace};
-pub use contact::{Contact, Dilation, Friction, JointLaw, MaterialPair, Memory, Potential, Roughness};
-pub use load::{FactorRow, Force};
+pub use block::{Block, Body, InSitu, Stress, StressGradient, Turn};
+pub use bolt::{Bolt, BoltDowel, BoltGrout, BoltPlace, BoltPlate, BoltSteel};
+pub use contact::{
+    Contact, Dilation, FractureEnergy, Friction, JointLaw, MaterialPair, Memory, Potential, Residual,
+    Roughness,
+};
+pub use load::{FactorRow, Force, Traction};
 pub use material::{Bedding, Damping, Material};
 pub use monitor::{At, Monitor};
 pub use output::{Field, FieldFormat, Output, Precision, TableFormat};
 pub use pieces::Pieces;
-pub use quiet::{IncidentWave, Quiet, RecordedAs, WaveKind};
+pub use quiet::{IncidentWave, Quiet, RecordedAs, Tie, WaveKind};
 pub use reference::Reference;
-pub use rock::{Axis, DiscRule, Discontinuity, Domain, OrientationScatter};
+pub use rock::{Axis, DiscRule, Discontinuity, Domain, Excavation, OrientationScatter};
 pub use rock::{Rock, Slivers, SpacingScatter, Voronoi, Whereabouts};
-pub use rockfall::{BoulderShape, BoulderSize, Boulders, CountingLine, Ground, Release};
-pub use rockfall::{ReleasePlace, Rockfall, Scatter, Zone};
+pub use rockfall::{BoulderShape, BoulderSize, Boulders, CountingLine, Ground, GroundLaw, Release};
+pub use rockfall::{ReleasePlace, Rockfall, RockfallDetail, RockfallRest, Scatter, Zone};
 pub use shaking::{AccelerationUnit, Baseline, Component, Record};
 pub use shape::{Fill, Grading, Pattern, Shape, Towards};
-pub use stage::{Stage, Then};
+pub use stage::{Stage, StageLaws, Then};
 pub use support::{By, Hold, MotionRow, Region, Support};
 pub use time::{ContactAt, Integrator, Mass, Settle, SettleDamping, Solver, Step, Time};
 pub use water::{LinearPressure, Pressure, Water, Wet};
-
-// Parts of others, which nobody names but in a scene's text; their fields are reached through those that hold them.
-pub(crate) use block::InSitu;
-pub(crate) use bolt::BoltSteel;
-pub(crate) use contact::{FractureEnergy, Residual};
-pub(crate) use load::Traction;
-pub(crate) use quiet::Tie;
 
 /// A complete scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
