@@ -42,6 +42,7 @@ mod jointed_column;
 mod jointed_slope;
 mod kirsch;
 mod large_strain;
+mod leaning_column;
 mod loads_over_time;
 mod lumped_mass;
 mod masonry_arch;

@@ -6,6 +6,9 @@
 //! of the scene along it, v the largest initial speed, σ_l the largest pressure of loads, ε the `depth_ratio` of the scene. s is the size that
 //! blocks of a twentieth of the volume are below, so that a sliver does not decide. Under large loads k_n = E L/s is enough, where contact is as
 //! compliant as half a block. The result is rounded up to 1, 2 or 5 times a power of ten.
+//! Columns that stand free tilt on contact that gives way: with the width b and the height H of the box that has the second moments of a block, 3 b²/H takes the place of s
+//! in the first where it is smaller. A column whose weight acts d inside the edge of its base stands as long as
+//! M = W H L₀/(18 k_n w d³) < 4/27 (`docs/theory/contact.md`).
 //!
 //! **Step.** The smallest of these, rounded down in the same way: a quarter of what the contact stability number allows (half of the step that `forecast::step` advises), a
 //! hundredth of the run, a tenth of the ramp of gravity and of the shortest time between rows of loads, a tenth of the height of a
@@ -18,7 +21,7 @@ use ndda_io::read::{self, LoadedScene};
 use ndda_io::scene::{Contact, FactorRow, Potential, Scene, Stress, is_unset};
 use ndda_io::summary::Chosen;
 use ndda_mesh::geometry::{Aabb, tet_volume, triangle_area_vector};
-use ndda_mesh::{BlockSet, Vec3};
+use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
 
 use crate::build::{self, Fault};
 use crate::forecast::held::NOTHING_MOVES;
@@ -40,6 +43,8 @@ const OF_ADVISED: f64 = 0.5;
 const WAY: f64 = 0.1;
 /// Rotation in a step.
 const TURN: f64 = 0.05;
+/// Height over width of blocks from which on they are columns, nearly.
+const SLENDER: f64 = 3.0;
 
 /// The scene with all values that it leaves out; the scene itself where it leaves out none.
 ///
@@ -93,6 +98,8 @@ pub fn write(file: &Path, chosen: &[Chosen]) -> Result<(), String> {
 struct Sizes {
     /// Size that blocks of a twentieth of the volume are below [m].
     block_m: f64,
+    /// Least 3 b²/H of the larger blocks of a scene, of width b and height H, that are not cut from rock [m].
+    column_m: f64,
     /// Smallest height of a tetrahedron of blocks that move [m].
     height_m: f64,
     /// Extent of all blocks along gravity [m].
@@ -110,7 +117,9 @@ struct Sizes {
 impl Sizes {
     fn new(scene: &Scene, blocks: &BlockSet) -> Self {
         let moving = build::moving(scene, blocks);
+        let gravity = Vec3::from(scene.gravity_m_s2);
         let (mut volumes, mut height_m, mut materials) = (Vec::new(), f64::INFINITY, Vec::new());
+        let mut columns = Vec::new();
         for (block, moves) in blocks.ids().zip(&moving) {
             let Some((material, _)) = moves else { continue };
             materials.push(&scene.materials[*material]);
@@ -121,15 +130,21 @@ impl Sizes {
                 volume += own;
                 height_m = height_m.min(height(&corners, own));
             }
+            // Blocks of rock that is cut hold each other.
+            if block.index() < scene.blocks.len() {
+                columns.push((volume, column(blocks, block, volume, &gravity)));
+            }
             volumes.push(volume);
         }
-        let gravity = Vec3::from(scene.gravity_m_s2);
         let extent = Aabb::around(&blocks.rest_position);
         let most = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
         let norm = |v: [f64; 3]| Vec3::from(v).norm();
-        let block_m = small(volumes).cbrt();
+        let small_m3 = small(volumes);
+        let block_m = small_m3.cbrt();
+        let columns = columns.into_iter().filter(|(volume_m3, _)| *volume_m3 >= small_m3);
         Self {
             block_m,
+            column_m: columns.map(|(_, column_m)| column_m).fold(f64::INFINITY, f64::min),
             height_m,
             fall_m: gravity.abs().dot(&(extent.max - extent.min)) / gravity.norm().max(f64::MIN_POSITIVE),
             gravity_m_s2: gravity.norm(),
@@ -157,6 +172,27 @@ impl Sizes {
             _ => format!("the weight of rock {} high{loads}", metres(self.fall_m)),
         }
     }
+}
+
+/// 3 b²/H of a block, from the box of the same second moments: H is its side that is nearest to gravity, b the shorter of the others.
+fn column(blocks: &BlockSet, block: BlockId, volume_m3: f64, gravity: &Vec3) -> f64 {
+    let corners = |tet: usize| blocks.tets[tet].map(|n| blocks.rest_position[n.index()]);
+    let centre_of = |corners: &[Vec3; 4]| corners.iter().sum::<Vec3>() / 4.0;
+    let weighted = blocks.tets_of(block).map(|tet| tet_volume(&corners(tet)) * centre_of(&corners(tet)));
+    let centre = weighted.sum::<Vec3>() / volume_m3;
+    let mut moment = Mat3::zeros();
+    for tet in blocks.tets_of(block) {
+        let arms = corners(tet).map(|x| x - centre);
+        let sum: Vec3 = arms.iter().sum();
+        let squares = arms.iter().map(|x| x * x.transpose()).sum::<Mat3>() + sum * sum.transpose();
+        moment += tet_volume(&corners(tet)) / 20.0 * squares;
+    }
+    let eigen = (moment / volume_m3).symmetric_eigen();
+    let side = |k: usize| (12.0 * eigen.eigenvalues[k].max(0.0)).sqrt();
+    let along = |k: usize| eigen.eigenvectors.column(k).dot(gravity).abs();
+    let up = (0..3).max_by(|a, b| along(*a).total_cmp(&along(*b))).expect("there are three axes");
+    let width_m = (0..3).filter(|k| *k != up).map(side).fold(f64::INFINITY, f64::min);
+    SLENDER * width_m * width_m / side(up)
 }
 
 /// Largest pressure of tractions, forces on a face of a block, and stress in the ground [Pa].
@@ -238,9 +274,12 @@ fn penalty(scene: &mut Scene, sizes: &Sizes) -> Option<Chosen> {
         let reason = format!("{NOTHING_MOVES}; {OF_YOUNG:e} of Young's modulus");
         return Some(Chosen { path: "contact.penalty_pa".into(), value: *penalty_pa, reason });
     }
-    let Sizes { block_m, density_kg_m3: rho, speed_m_s: v, .. } = *sizes;
+    let Sizes { block_m, column_m, density_kg_m3: rho, speed_m_s: v, .. } = *sizes;
     let pressure_pa = rho * v * v + 2.0 * sizes.rest_pa();
-    let shallow_pa = length_m * pressure_pa / (2.0 * *depth_ratio * block_m);
+    // Columns matter where they rest on each other, and lean.
+    let is_slender = column_m < block_m && sizes.rest_pa() > 0.0;
+    let overlaps_m = if is_slender { column_m } else { block_m };
+    let shallow_pa = length_m * pressure_pa / (2.0 * *depth_ratio * overlaps_m);
     let stiff_pa = MOST_OF_YOUNG * sizes.young_pa * length_m / block_m;
     let (value, why) = if pressure_pa <= 0.0 {
         let why = "no loads and no speeds: ";
@@ -259,13 +298,16 @@ fn penalty(scene: &mut Scene, sizes: &Sizes) -> Option<Chosen> {
             ),
         )
     } else {
-        let (block, weight) = (metres(block_m), sizes.weight());
-        (
-            shallow_pa,
-            format!(
-                "blocks of {block} overlap by at most {depth_ratio:e} of their size at rest under {weight}"
+        let (size, weight) = (metres(overlaps_m), sizes.weight());
+        let why = match is_slender {
+            true => format!(
+                "columns hardly lean: they overlap by at most {depth_ratio:e} of {size}, three times the square of their width over their height, at rest under {weight}"
             ),
-        )
+            false => format!(
+                "blocks of {size} overlap by at most {depth_ratio:e} of their size at rest under {weight}"
+            ),
+        };
+        (shallow_pa, why)
     };
     *penalty_pa = rounded_up(value);
     Some(Chosen { path: "contact.penalty_pa".into(), value: *penalty_pa, reason: why })

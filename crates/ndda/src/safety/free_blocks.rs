@@ -24,6 +24,16 @@ pub fn gone_m(simulation: &Simulation, start: &[Vec3]) -> Vec<(BlockId, f64)> {
     free(simulation).map(|block| (block, gone(block))).collect()
 }
 
+/// Largest speed of a block, by its kinetic energy [m/s].
+pub fn fastest_m_s(simulation: &Simulation) -> f64 {
+    let speed_m_s = |block: BlockId| {
+        let operator = &simulation.shape(block).operator;
+        let velocity = &simulation.state().velocity[simulation.blocks().nodes_of(block)];
+        (2.0 * operator.kinetic_energy_j(velocity) / operator.mass_kg).sqrt()
+    };
+    free(simulation).map(speed_m_s).fold(0.0, f64::max)
+}
+
 /// A block that does not stand as it is drawn: on the way to rest it went to another place.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Moved {

@@ -63,11 +63,8 @@ fn not_standing(answer: &Safety) -> Option<String> {
         [0.0, 0.0, 0.0] => String::new(),
         direction => format!(" towards {}", trend_and_plunge(direction)),
     };
-    let moves = format!(
-        "`{}`{others} moved {}{way} before the scene came to rest",
-        first.block,
-        length(first.moved_m)
-    );
+    let goes = format!("`{}`{others} moved {}{way}", first.block, length(first.moved_m));
+    let moves = format!("{goes} before the scene came to rest");
     Some(match (answer.stands_as_drawn(), answer.trials.is_empty()) {
         (true, _) => {
             format!(
@@ -75,7 +72,9 @@ fn not_standing(answer: &Safety) -> Option<String> {
             )
         }
         (false, true) => {
-            format!("{moves}: hold it by a support, or correct its loads, its water or its shape")
+            format!(
+                "{goes}: hold it by a support, or correct its loads, its water or its shape; raise the penalty if it topples near its limit, since edges give way"
+            )
         }
         (false, false) => {
             format!(

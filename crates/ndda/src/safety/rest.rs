@@ -38,7 +38,7 @@ pub fn settled(loaded: &LoadedScene, folder: &Path, watch: &Watch) -> Result<(St
         return Ok(known);
     }
     let (start, strength) = found(loaded, folder, watch)?;
-    if let Some(out) = watch.out {
+    if let Some(out) = watch.out.filter(|_| !start.still_moves) {
         Kept::write(out, &loaded.scene, &start, strength)?;
     }
     Ok((start, strength))
@@ -119,7 +119,15 @@ fn found(loaded: &LoadedScene, folder: &Path, watch: &Watch) -> Result<(Start, f
             }
             Ok(Rest::Interrupted) => return Err(SafetyError::Interrupted),
             Err(source) if !has_strength => return Err(SafetyError::NotHeld { source }),
-            Err(source) => failed = Some(SafetyError::NotSettled { strength, source }),
+            Err(source) => {
+                let moved = Moved::since(&simulation, &begun);
+                if strength == STRONGEST && elsewhere.is_none() && !moved.is_empty() {
+                    let start = Start::new(&mut simulation, gravity, softest);
+                    let start = start.map_err(|source| SafetyError::NotSettled { strength, source })?;
+                    return Ok((Start { moved, still_moves: true, ..start }, strength));
+                }
+                failed = Some(SafetyError::NotSettled { strength, source });
+            }
         }
     }
     elsewhere.ok_or_else(|| failed.expect("there are strengths"))

@@ -184,9 +184,9 @@ impl<'a> Search<'a> {
         Ok(answer)
     }
 
-    /// Whether every block that is free came to rest elsewhere: there is no state to begin from then.
+    /// Whether every block that is free came to rest elsewhere, or some never do: there is no state to begin from then.
     fn none_stands(&self) -> bool {
-        self.start.moved.len() == self.start.free
+        self.start.still_moves || self.start.moved.len() == self.start.free
     }
 
     /// The factor at which a scene fails as drawn, that does not stand with joints as strong as were tried.

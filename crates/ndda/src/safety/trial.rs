@@ -21,10 +21,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use super::failing::{self, BlockVelocity};
-use super::free_blocks::{ELSEWHERE, Moved, free};
+use super::free_blocks::{ELSEWHERE, Moved, fastest_m_s, free};
 use super::slender::Slender;
 use super::watched::Watched;
-use ndda_mesh::{BlockId, Vec3};
+use ndda_mesh::Vec3;
 use ndda_solver::{LocalDamping, Settle, Simulation, Snapshot, StepError};
 use serde::{Deserialize, Serialize};
 
@@ -116,6 +116,8 @@ pub struct Start {
     pub blocks_crc32: u32,
     /// Blocks that came to rest elsewhere, even with the largest strength.
     pub moved: Vec<Moved>,
+    /// Whether these do not come to rest at all, so that no trial can begin.
+    pub still_moves: bool,
     /// Free blocks.
     pub free: usize,
     /// The block that would topple first if the slope were made steeper.
@@ -165,6 +167,7 @@ impl Start {
             normals,
             blocks_crc32,
             moved: Vec::new(),
+            still_moves: false,
             free: free(simulation).count(),
             slender,
         })
@@ -266,10 +269,7 @@ impl Course<'_> {
                 }
             }
             watched.look(simulation);
-            if let Some((block, gone_m)) = watched.accelerating(&far_m) {
-                let name = &simulation.blocks().names[block.index()];
-                let reason =
-                    format!("`{name}` accelerates; it had moved {} when that was clear", length(gone_m));
+            if let Some(reason) = watched.fails(simulation, &far_m) {
                 return Some(Ok((State::Fails, reason)));
             }
             resting = if fastest_m_s(simulation) < slow_m_s { resting + 1 } else { 0 };
@@ -283,7 +283,12 @@ impl Course<'_> {
                 break;
             }
         }
-        Some(Ok(self.at_the_end(simulation, watched, &far_m)))
+        // What has gone faster and faster all the time need not have gone far.
+        let elastic_m = vec![FAR * elastic_m; far_m.len()];
+        let verdict = self.at_the_end(simulation, watched, &far_m);
+        let is_open = verdict.0 == State::Undecided;
+        let fails = is_open.then(|| watched.fails(simulation, &elastic_m)).flatten();
+        Some(Ok(fails.map_or(verdict, |reason| (State::Fails, reason))))
     }
 
     /// Whether it can be said what becomes of the blocks.
@@ -335,7 +340,11 @@ impl Course<'_> {
                 break;
             }
         }
-        Some(settled.map(|()| None))
+        // What does not rest is let go: it accelerates, or it does not.
+        Some(match settled {
+            Ok(()) | Err(StepError::NotSettled { .. }) => Ok(None),
+            Err(error) => Err(error),
+        })
     }
 
     /// How far each free block goes elastically at most [m].
@@ -383,14 +392,4 @@ impl Course<'_> {
 fn broken(simulation: &Simulation) -> [usize; 2] {
     let facets = &simulation.state().contact.facets;
     [facets.iter().filter(|facet| facet.broken).count(), facets.len()]
-}
-
-/// Largest speed of a block, by its kinetic energy [m/s].
-fn fastest_m_s(simulation: &Simulation) -> f64 {
-    let speed_m_s = |block: BlockId| {
-        let operator = &simulation.shape(block).operator;
-        let velocity = &simulation.state().velocity[simulation.blocks().nodes_of(block)];
-        (2.0 * operator.kinetic_energy_j(velocity) / operator.mass_kg).sqrt()
-    };
-    free(simulation).map(speed_m_s).fold(0.0, f64::max)
 }

@@ -4,6 +4,7 @@ use ndda_mesh::{BlockId, Vec3};
 use ndda_solver::Simulation;
 
 use super::free_blocks::{free, gone_m};
+use crate::numbers::length;
 
 /// Fewest windows that are compared with each other.
 const SPAN: usize = 2;
@@ -91,6 +92,13 @@ impl Watched {
         };
         let block = (0..self.blocks.len()).filter(|_| third >= SPAN).find(accelerates)?;
         Some((self.blocks[block], self.gone_m[last][block]))
+    }
+
+    /// That a block has gone far and accelerates.
+    pub fn fails(&self, simulation: &Simulation, far_m: &[f64]) -> Option<String> {
+        let (block, gone_m) = self.accelerating(far_m)?;
+        let name = &simulation.blocks().names[block.index()];
+        Some(format!("`{name}` accelerates; it had moved {} when that was clear", length(gone_m)))
     }
 
     /// A third of the windows since the push, or else the start.

@@ -10,6 +10,8 @@ use crate::safety::{BlockVelocity, SafetyError};
 const FIRST_STRIDE: f64 = 1.25;
 /// The last one over the wanted error.
 const LAST_STRIDE: f64 = 0.2;
+/// Trials one after the other in which blocks neither stand nor fail, before the search ends.
+const MOST_UNDECIDED: usize = 10;
 
 impl Search<'_> {
     /// Loads that grow by strides, each from where blocks rest under the last; strides shorten where blocks fail, since a
@@ -24,7 +26,7 @@ impl Search<'_> {
             return Ok(first.ended);
         }
         stood[0].1 = first.ended;
-        let (mut factor, mut next) = (1.0, FIRST_STRIDE);
+        let (mut factor, mut next, mut undecided) = (1.0, FIRST_STRIDE, 0);
         while factor < self.plan.most && next <= self.plan.most * last {
             let tried = self.try_factor(next, &stood[stood.len() - 1].1, &failing, before_s)?;
             match tried.state {
@@ -45,11 +47,14 @@ impl Search<'_> {
                     }
                 }
                 State::Fails => break,
-                State::Undecided => {
+                State::Undecided if undecided < MOST_UNDECIDED => {
+                    undecided += 1;
                     next *= last;
                     continue;
                 }
+                State::Undecided => break,
             }
+            undecided = 0;
             factor = stood[stood.len() - 1].0;
             next = factor * stride;
         }

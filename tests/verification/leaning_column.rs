@@ -1,0 +1,90 @@
+//! A column whose weight acts near the edge of its base leans, since contact gives way there, and may fall although a rigid edge would hold it.
+//!
+//! Its weight N acts d inside the edge, and a strip of 3 d carries it, with pressures from zero to 2 N/(3 d w) at the edge. Contact gives way by
+//! N L₀/(3 d w k_n) there, so that the column tilts by θ = N L₀/(9 k_n w d²), and its weight, H/2 above the base, moves towards the edge by
+//! θ (1 + tan²α) H/2. With x for what is left of d, x² (1 − x) = M = N H L₀ (1 + tan²α)/(18 k_n w d³), which has an answer up to M = 4/27.
+
+use ndda_mesh::{BlockId, Vec3};
+use ndda_solver::{Settle, Simulation};
+
+use crate::evidence::Answer::{AtLeast, Within};
+use crate::evidence::row;
+use crate::simulation;
+
+const HEIGHT_M: f64 = 4.0;
+const WIDTH_M: f64 = 1.0;
+/// Distance of the weight from the edge without a tilt [m].
+const INSIDE_M: f64 = 0.1;
+const G: f64 = 9.81;
+const DENSITY: f64 = 2500.0;
+const MOST: f64 = 4.0 / 27.0;
+
+/// Tangent of the angle by which gravity is tilted.
+fn slope() -> f64 {
+    (0.5 * WIDTH_M - INSIDE_M) / (0.5 * HEIGHT_M)
+}
+
+/// The column on level ground under tilted gravity, with the penalty of this M.
+fn column(m: f64) -> Simulation {
+    let secant2 = 1.0 + slope() * slope();
+    let normal_n = DENSITY * G * HEIGHT_M * WIDTH_M / secant2.sqrt();
+    let penalty_pa = normal_n * HEIGHT_M * secant2 / (18.0 * INSIDE_M.powi(3) * m);
+    let (along, down) = (G * slope() / secant2.sqrt(), G / secant2.sqrt());
+    simulation(&format!(
+        "(title: \"column\", time: (step_s: 1e-3, end_s: 1), gravity_m_s2: ({along}, 0, {}),
+          materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: {DENSITY})],
+          blocks: [
+              (name: \"floor\", material: \"rock\", body: Fixed, shape: Box(size_m: (4, 3, 1), cells: (1, 1, 1)), at_m: (-1, -1, -1)),
+              (name: \"column\", material: \"rock\", body: Rigid, shape: Box(size_m: ({WIDTH_M}, 1, {HEIGHT_M}), cells: (1, 1, 1))),
+          ],
+          contact: Potential(penalty_pa: {penalty_pa:e}, potential: Smooth(reference_m: 1), friction: (friction_deg: 60)))",
+        -down
+    ))
+}
+
+/// Tilt of the column [rad].
+fn tilt(simulation: &Simulation) -> f64 {
+    let nodes = simulation.blocks().nodes_of(BlockId(1));
+    let (rest, now) =
+        (&simulation.blocks().rest_position[nodes.clone()], &simulation.state().position[nodes]);
+    let corner = |at: Vec3| now[rest.iter().position(|x| (x - at).norm() < 1e-9).expect("a corner")];
+    let side = corner(Vec3::new(0.0, 0.0, HEIGHT_M)) - corner(Vec3::zeros());
+    side.x.atan2(side.z)
+}
+
+/// The larger x with x² (1 − x) = M.
+fn left(m: f64) -> f64 {
+    let (mut low, mut high) = (2.0 / 3.0, 1.0);
+    for _ in 0..60 {
+        let x = 0.5 * (low + high);
+        (low, high) = if x * x * (1.0 - x) > m { (x, high) } else { (low, x) };
+    }
+    low
+}
+
+#[test]
+fn a_column_leans_by_what_contact_gives_way_at_its_edge() {
+    for m in [0.03, 0.1] {
+        let mut simulation = column(m);
+        simulation.settle(&Settle::new(1e-6, 100_000)).unwrap();
+        let secant2 = 1.0 + slope() * slope();
+        let exact = (1.0 - left(m)) * INSIDE_M / (0.5 * HEIGHT_M * secant2);
+        row(
+            "leaning column",
+            &format!("tilt at M = {m} [rad]"),
+            tilt(&simulation),
+            // The strip is as wide as the contact is deep at the edge, θ of its 3 d, times the slope: of first order in θ.
+            Within(exact, 0.02),
+        );
+    }
+}
+
+#[test]
+fn beyond_four_parts_of_27_it_falls_although_its_weight_acts_inside_the_edge() {
+    let mut simulation = column(1.25 * MOST);
+    let settled = simulation.settle(&Settle::new(1e-6, 20_000));
+    assert!(settled.is_err(), "{settled:?}");
+    // A rigid edge lets it go where its weight has passed the edge.
+    let over = INSIDE_M / (0.5 * HEIGHT_M);
+    row("leaning column", "tilt at M = 0.185 [rad]", tilt(&simulation).abs(), AtLeast(over));
+}
