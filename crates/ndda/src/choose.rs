@@ -280,7 +280,7 @@ fn penalty(scene: &mut Scene, sizes: &Sizes) -> Option<Chosen> {
     let is_slender = column_m < block_m && sizes.rest_pa() > 0.0;
     let overlaps_m = if is_slender { column_m } else { block_m };
     let shallow_pa = length_m * pressure_pa / (2.0 * *depth_ratio * overlaps_m);
-    let stiff_pa = MOST_OF_YOUNG * sizes.young_pa * length_m / block_m;
+    let stiff_pa = MOST_OF_YOUNG * sizes.young_pa * length_m / overlaps_m;
     let (value, why) = if pressure_pa <= 0.0 {
         let why = "no loads and no speeds: ";
         (
@@ -292,8 +292,8 @@ fn penalty(scene: &mut Scene, sizes: &Sizes) -> Option<Chosen> {
             stiff_pa,
             format!(
                 "as stiff as half a block of {}; blocks overlap by at most {:.0e} of their size at rest under {}",
-                metres(block_m),
-                length_m * pressure_pa / (2.0 * rounded_up(stiff_pa) * block_m),
+                metres(overlaps_m),
+                length_m * pressure_pa / (2.0 * rounded_up(stiff_pa) * overlaps_m),
                 sizes.weight()
             ),
         )

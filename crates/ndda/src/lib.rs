@@ -65,6 +65,7 @@ pub mod forecast;
 mod frames;
 pub mod joint;
 pub mod judge;
+mod lean;
 pub mod machine;
 pub mod mesh_export;
 pub mod mesh_files;

@@ -91,7 +91,7 @@ fn elsewhere(tree: &Node, text: &str, path: &str, value: &str) -> Option<String>
     // A parameter comes first: setting it changes all values that are computed from it.
     found.sort_by_key(|path| !path.starts_with(parameters::FIELD));
     match found.as_slice() {
-        [] => None,
+        [] => like_parameters(tree, text, leaf),
         [one] => Some(format!("did you mean --set {one}={value}?")),
         [first, ..] if first.starts_with(parameters::FIELD) => {
             Some(format!("did you mean --set {first}={value}?"))
@@ -102,6 +102,14 @@ fn elsewhere(tree: &Node, text: &str, path: &str, value: &str) -> Option<String>
             Some(format!("`{leaf}` is at {} places, such as {listed}", many.len()))
         }
     }
+}
+
+/// Parameters whose name has this one in it.
+fn like_parameters(tree: &Node, text: &str, leaf: &str) -> Option<String> {
+    let all = tree.child(text, parameters::FIELD)?.children.iter().filter_map(|child| child.key.as_deref());
+    let like: Vec<String> =
+        all.filter(|key| key.contains(leaf)).map(|key| format!("{}.{key}", parameters::FIELD)).collect();
+    (!like.is_empty()).then(|| format!("did you mean {}?", like.join(", ")))
 }
 
 /// Paths of all fields of a name; items of lists go by their own `name`, or else by number.

@@ -4,7 +4,7 @@ mod types;
 mod words;
 
 use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::de::DeserializeOwned;
 
@@ -45,8 +45,15 @@ pub fn text_of(path: &Path) -> Result<String, SceneErrors> {
         return Err(unreadable("is a folder".into(), "name a scene file, such as scenes/sliding_45.ron"));
     }
     let read = if is_standard_input(path) { limited::standard_input() } else { limited::stream(path) };
-    let bytes =
-        read.map_err(|e| unreadable(format!("cannot be read: {e}"), "check the path of the scene file"))?;
+    let with_ending = PathBuf::from(format!("{}.ron", path.display()));
+    let help = match with_ending.is_file() {
+        true => format!("did you mean {}?", with_ending.display()),
+        false => "check the path of the scene file".into(),
+    };
+    let bytes = read.map_err(|e| match e.kind() {
+        std::io::ErrorKind::NotFound => unreadable("there is no such file".into(), &help),
+        _ => unreadable(format!("cannot be read: {e}"), &help),
+    })?;
     String::from_utf8(bytes).map_err(|e| {
         let at = e.utf8_error().valid_up_to();
         let line = e.as_bytes()[..at].iter().filter(|&&b| b == b'\n').count() + 1;

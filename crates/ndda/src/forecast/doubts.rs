@@ -12,11 +12,14 @@ use super::step::Advice;
 use crate::bolt_report::BoltReports;
 use crate::build;
 use crate::choose;
+use crate::lean;
 use crate::waves;
 
 /// Penalties over Young's modulus, for a potential of 1 m, outside of which contact is deep or requires short steps.
 const SOFT: f64 = 1e-6;
 const HARD: f64 = 1.0;
+/// Young's modulus below which no rock has one [Pa].
+const SOFTEST_PA: f64 = 1e6;
 /// Overlap at rest over the size of blocks from which on it is a doubt.
 const DEEP: f64 = 0.05;
 
@@ -43,6 +46,7 @@ pub fn doubts(scene: &Scene, simulation: &Simulation, advice: Option<&Advice>, f
             "no blocks touch at the start, so they fall while the scene settles: move them together".into(),
         );
     }
+    doubts.extend(lean::worst(scene, simulation).map(|lean| lean.to_string()));
     // The depth of contact at rest says more than the ratio of two stiffnesses.
     doubts.extend(depth(scene, simulation).or_else(|| penalty(scene, simulation, *penalty_pa, potential)));
     doubts
@@ -98,13 +102,19 @@ fn penalty(scene: &Scene, simulation: &Simulation, penalty_pa: f64, potential: &
     // Contact of bonded pieces is to be as stiff as their bonds.
     let is_bonded = scene.rock.iter().any(|rock| rock.into.is_some());
     let what = match ratio {
-        _ if !deforms || is_bonded => return None,
+        // A modulus in another unit is told as such.
+        _ if !deforms || is_bonded || stiffest_pa < SOFTEST_PA => return None,
         r if r < SOFT => "soft for this rock: blocks sink deep into each other",
         r if r > HARD => "stiff for this rock: steps have to be short, and nothing is gained",
         _ => return None,
     };
-    let (from, to) = (1e-4 * stiffest_pa, 1e-2 * stiffest_pa);
+    let advised = match choose::resting(scene, simulation.blocks()) {
+        Some(resting) => {
+            format!("{:.0e} suits this scene, which is chosen if none is given", resting.penalty_pa)
+        }
+        None => format!("{:.0e} to {:.0e} suits most scenes", 1e-4 * stiffest_pa, 1e-2 * stiffest_pa),
+    };
     Some(format!(
-        "contact is very {what} (its pressure per metre of penetration is {ratio:.0e} of Young's modulus); a penalty_pa of {from:.0e} to {to:.0e} suits most scenes"
+        "contact is very {what} (its pressure per metre of penetration is {ratio:.0e} of Young's modulus); a penalty_pa of {advised}"
     ))
 }

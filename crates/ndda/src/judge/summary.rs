@@ -4,13 +4,14 @@ use ndda_fem::stress::volume_m3;
 use ndda_io::scene::{Integrator, Scene};
 use ndda_io::summary::{
     BlockEnd, BoltEnd, Chosen, Counts, Invariants, Judgement, LabelWord, MonitorEnd, Named, ReferenceError,
-    Status, Summary,
+    Status, Summary, Verdict,
 };
 use ndda_mesh::Vec3;
 use ndda_solver::{BoltStatus, Simulation, StepCounts};
 
 use crate::judge::reference;
 use crate::judge::verdict;
+use crate::lean;
 use crate::machine;
 use crate::run::recorder::Recorder;
 
@@ -48,7 +49,13 @@ pub fn summarise(simulation: &Simulation, recorder: &Recorder, ending: Ending) -
         // A run that stops between two samples has no energy at its end; the label says why it stopped.
         verdicts.0.retain(|(name, _)| name != verdict::UNMEASURED);
     }
-    let label = verdict::label(simulation, ending.stopped_by.as_deref());
+    let mut label = verdict::label(simulation, ending.stopped_by.as_deref());
+    if let Some(lean) = lean::worst(ending.scene, simulation).filter(|_| label.word != LabelWord::Stopped) {
+        let verdict = Verdict { value: Some(lean.m), limit: Some(lean::MOST), verdict: Judgement::Warn };
+        verdicts.0.push(("lean over an edge that gives way".into(), verdict));
+        label.word = LabelWord::Inaccurate;
+        label.reasons.push(lean.to_string());
+    }
     let beyond = verdicts.0.iter().any(|(_, v)| v.verdict == Judgement::Fail);
     let failed = ending.strict && (beyond || label.word == LabelWord::Inaccurate);
     let status = match (&ending.stopped_by, failed) {

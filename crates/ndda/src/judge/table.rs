@@ -284,7 +284,10 @@ fn block_table(summary: &Summary) -> String {
         ]
     });
     let header = ["block", "displacement [m]", "farthest point", "largest", "rotation", "velocity [m/s]"];
-    framed(&header, rows.collect()) + &others
+    match others.is_empty() {
+        true => framed(&header, rows.collect()),
+        false => format!("{}\n{others}", framed(&header, rows.collect())),
+    }
 }
 
 #[cfg(test)]

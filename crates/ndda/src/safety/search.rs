@@ -111,7 +111,7 @@ impl<'a> Search<'a> {
         };
         if strength > 1.0 && start.moved.is_empty() {
             answer.remarks.push(format!(
-                "as written the scene does not come to rest; it does with joints {strength} times as strong, and trials begin from there"
+                "blocks move as the scene is drawn: it comes to rest with joints {strength} times as strong, and trials begin from there"
             ));
         }
         let (mut known, mut known_mechanism) = (Vec::new(), None);

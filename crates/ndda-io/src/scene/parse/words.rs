@@ -80,7 +80,7 @@ pub(super) fn explain(error: &SpannedError, plain: &Resolved, text: &str, tree: 
                 return Diagnostic { path: field.0, ..at(Code::Syntax, message) }
                     .with_help(units::advice(number, symbol, &field.1));
             }
-            if let Some(help) = bare_angle(code, text, start, &path) {
+            if let Some(help) = bare_number(text, start, &path) {
                 return at(Code::WrongType, in_words(code)).with_help(help);
             }
             let (kind, message, help) = no_count(code, &plain.text, begins)
@@ -91,12 +91,16 @@ pub(super) fn explain(error: &SpannedError, plain: &Resolved, text: &str, tree: 
     }
 }
 
-/// How friction is written of which only the angle is given.
-fn bare_angle(error: &RonError, text: &str, at: usize, path: &str) -> Option<String> {
-    let is_field = matches!(error, RonError::ExpectedStructLike | RonError::ExpectedNamedStructLike(_))
-        && path.rsplit('.').next() == Some("friction");
-    let number: String = text[at..].chars().take_while(|c| c.is_ascii_digit() || *c == '.').collect();
-    (is_field && !number.is_empty()).then(|| format!("write friction: (friction_deg: {number})"))
+/// How a field is written that has fields of its own, and of which a number is given: the friction angle, the length of a step.
+fn bare_number(text: &str, at: usize, path: &str) -> Option<String> {
+    let of_number = |c: &char| c.is_ascii_digit() || ".eE-".contains(*c);
+    let number: String = text[at..].chars().take_while(of_number).collect();
+    number.parse::<f64>().ok()?;
+    match path.rsplit('.').next()? {
+        "friction" => Some(format!("write friction: (friction_deg: {number})")),
+        "step" => Some(format!("write step_s: {number} for the length of a step")),
+        _ => None,
+    }
 }
 
 /// What stands behind the name of a field that is missing.

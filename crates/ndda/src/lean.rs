@@ -1,0 +1,277 @@
+//! Blocks whose weight acts near the edge of their base, where contact gives way and lets them lean, or fall.
+//!
+//! A weight N that acts d inside the edge presses on a strip of 3 d. With the height h of the mass centre above the base, the width w of the base
+//! along the edge, and α between gravity and the normal of the base, what contact gives way takes the part 1 − x of d, x² (1 − x) = M,
+//! M = N h L₀/(9 k_n w d³ cos²α). Beyond M = 4/27 there is no such x, and the block falls, although a rigid edge would hold it.
+
+use std::fmt;
+
+use ndda_io::scene::{Contact, Potential, Scene, matches};
+use ndda_mesh::geometry::{Aabb, triangle_area_vector};
+use ndda_mesh::{BlockId, Vec3};
+use ndda_solver::{BodyKind, Simulation};
+
+use crate::numbers::length;
+
+/// M from which on a block leans by more than a twentieth of d.
+pub const MOST: f64 = 0.05;
+/// M from which on it falls.
+const FALLS: f64 = 4.0 / 27.0;
+/// M with the penalty that is advised.
+const ADVISED: f64 = 0.02;
+/// Most free blocks of a scene that are looked at: each is compared with all others.
+const MOST_BLOCKS: usize = 100;
+/// Cosine and part of a block's size by which faces differ that lie on each other.
+const SAME_DIRECTION: f64 = 1.0 - 1e-9;
+const SAME_PLANE: f64 = 1e-3;
+/// Cosine of the steepest base, against gravity.
+const STEEPEST: f64 = 0.5;
+
+/// A block whose weight acts near the edge of its base.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lean {
+    /// Its name.
+    pub block: String,
+    /// d [m].
+    pub inside_m: f64,
+    /// M.
+    pub m: f64,
+    /// Penalty with which it hardly leans [Pa].
+    pub penalty_pa: f64,
+}
+
+impl fmt::Display for Lean {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let Self { block, inside_m, m, penalty_pa } = self;
+        let inside = length(*inside_m);
+        write!(
+            f,
+            "the weight of block `{block}` acts {inside} inside the edge of its base, where contact gives way "
+        )?;
+        match *m < FALLS {
+            true => write!(f, "and takes {:.0} % of that, limit 6 %", 100.0 * (1.0 - left(*m)))?,
+            false => write!(f, "so that it falls, which a rigid edge would prevent")?,
+        }
+        write!(f, ": raise penalty_pa to {penalty_pa:.0e}")
+    }
+}
+
+/// x: the part of d that is left.
+fn left(m: f64) -> f64 {
+    let (mut low, mut high) = (2.0 / 3.0, 1.0);
+    for _ in 0..50 {
+        let x = 0.5 * (low + high);
+        if x * x * (1.0 - x) > m { low = x } else { high = x }
+    }
+    low
+}
+
+/// The free block of largest M at the start; none without gravity, of potentials other than `Smooth`, or where all M are below [`MOST`].
+pub fn worst(scene: &Scene, simulation: &Simulation) -> Option<Lean> {
+    let Some(Contact::Potential { penalty_pa, potential: Potential::Smooth { reference_m }, .. }) =
+        scene.contact
+    else {
+        return None;
+    };
+    let gravity = Vec3::from(scene.gravity_m_s2);
+    // Blocks of rock that is cut hold each other.
+    let is_free = |block: &BlockId| {
+        let name = &simulation.blocks().names[block.index()];
+        let is_held = scene.supports.iter().any(|support| matches(&support.block, name));
+        simulation.shape(*block).kind != BodyKind::Fixed && !is_held && block.index() < scene.blocks.len()
+    };
+    let free: Vec<BlockId> = simulation.blocks().ids().filter(is_free).collect();
+    if gravity == Vec3::zeros() || free.len() > MOST_BLOCKS {
+        return None;
+    }
+    let lean = |block: BlockId| {
+        let base = Base::of(simulation, block, &gravity)?;
+        let inside_m = base.inside_m()?;
+        let normal_n = simulation.shape(block).operator.mass_kg * gravity.norm() * base.cosine;
+        let m = normal_n * base.height_m * reference_m
+            / (9.0 * penalty_pa * inside_m.1 * inside_m.0.powi(3) * base.cosine.powi(2));
+        let name = simulation.blocks().names[block.index()].clone();
+        (m > MOST).then(|| Lean {
+            block: name,
+            inside_m: inside_m.0,
+            m,
+            penalty_pa: penalty_pa * m / ADVISED,
+        })
+    };
+    free.into_iter().filter_map(lean).max_by(|a, b| a.m.total_cmp(&b.m))
+}
+
+/// Where a block rests on others, seen from its foot: where the line of its weight meets its base.
+struct Base {
+    /// Corners of what it rests on, in two axes of the base.
+    points: Vec<[f64; 2]>,
+    height_m: f64,
+    cosine: f64,
+}
+
+/// Triangles of a block at the start, with their normals.
+fn faces(simulation: &Simulation, block: BlockId) -> impl Iterator<Item = ([Vec3; 3], Vec3)> {
+    let blocks = simulation.blocks();
+    let position = simulation.start_position();
+    blocks.triangles_of(block).map(move |triangle| {
+        let corners = blocks.triangles[triangle].map(|node| position[node.index()]);
+        (corners, triangle_area_vector(&corners))
+    })
+}
+
+impl Base {
+    /// The lowest face of a block, where others touch that one only, or its top.
+    fn of(simulation: &Simulation, block: BlockId, gravity: &Vec3) -> Option<Self> {
+        let down = gravity.normalize();
+        let nodes = &simulation.start_position()[simulation.blocks().nodes_of(block)];
+        let bounds = Aabb::around(nodes);
+        let near_m = SAME_PLANE * bounds.diagonal();
+        let bounds = bounds.inflated(near_m);
+        let own: Vec<([Vec3; 3], Vec3)> = faces(simulation, block).collect();
+        let (first, normal) = own
+            .iter()
+            .map(|(corners, area)| (corners[0], area.normalize()))
+            .max_by(|a, b| a.1.dot(&down).total_cmp(&b.1.dot(&down)))?;
+        let cosine = normal.dot(&down);
+        let centre = simulation.shape(block).operator.center(nodes);
+        let height_m = (first - centre).dot(&normal);
+        if cosine < STEEPEST || height_m <= 0.0 {
+            return None;
+        }
+        let foot = centre + height_m / cosine * down;
+        let across = normal.cross(&Vec3::ith(normal.iamin(), 1.0)).normalize();
+        let axes = [across, normal.cross(&across)];
+        let flat = |x: &Vec3| axes.map(|axis| axis.dot(&(x - foot)));
+        let is_on = |plane: &([Vec3; 3], Vec3), other: &([Vec3; 3], Vec3)| {
+            let normal = plane.1.normalize();
+            let faces = normal.dot(&other.1.normalize()) < -SAME_DIRECTION;
+            faces && (other.0[0] - plane.0[0]).dot(&normal).abs() < near_m
+        };
+        let is_base = |plane: &([Vec3; 3], Vec3)| plane.1.normalize().dot(&normal) > SAME_DIRECTION;
+        let outline = hull(
+            own.iter()
+                .filter(|plane| is_base(plane))
+                .flat_map(|(corners, _)| corners.iter().map(flat))
+                .collect(),
+        );
+        let mut points = Vec::new();
+        for other in simulation.blocks().ids().filter(|other| *other != block) {
+            for face in faces(simulation, other).filter(|(corners, _)| Aabb::around(corners).touches(&bounds))
+            {
+                let Some(plane) = own.iter().find(|plane| is_on(plane, &face)) else { continue };
+                if is_base(plane) {
+                    points.extend(clipped(face.0.map(|x| flat(&x)).to_vec(), &outline));
+                } else if plane.1.normalize().dot(&normal) > -STEEPEST {
+                    return None;
+                }
+            }
+        }
+        Some(Self { points: hull(points), height_m, cosine })
+    }
+
+    /// Distance of the foot from the nearest edge, and width of the base along that [m]; none where it lies outside, or the strip at the edge is all of the base.
+    fn inside_m(&self) -> Option<(f64, f64)> {
+        let corners = &self.points;
+        let edges = (0..corners.len()).map(|k| (corners[k], corners[(k + 1) % corners.len()]));
+        let distance = |(a, b): ([f64; 2], [f64; 2])| {
+            let along = [b[0] - a[0], b[1] - a[1]];
+            let long = along[0].hypot(along[1]);
+            (turn(a, b, [0.0; 2]) / long, [along[0] / long, along[1] / long])
+        };
+        let (inside_m, along) = edges.map(distance).min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let extent = |axis: [f64; 2]| {
+            let places = corners.iter().map(|x| axis[0] * x[0] + axis[1] * x[1]);
+            places.clone().fold(f64::MIN, f64::max) - places.fold(f64::MAX, f64::min)
+        };
+        let (width_m, across_m) = (extent(along), extent([-along[1], along[0]]));
+        (corners.len() > 2 && inside_m > 0.0 && 3.0 * inside_m < across_m).then_some((inside_m, width_m))
+    }
+}
+
+/// Twice the area of a triangle, positive where it is counter-clockwise.
+fn turn(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
+    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+}
+
+/// The convex hull, counter-clockwise (Andrew 1979).
+fn hull(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+    points.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+    let half = |points: &mut dyn Iterator<Item = &[f64; 2]>| {
+        let mut chain: Vec<[f64; 2]> = Vec::new();
+        for &point in points {
+            while chain.len() > 1 && turn(chain[chain.len() - 2], chain[chain.len() - 1], point) <= 0.0 {
+                chain.pop();
+            }
+            chain.push(point);
+        }
+        chain.pop();
+        chain
+    };
+    let mut found = half(&mut points.iter());
+    found.extend(half(&mut points.iter().rev()));
+    found
+}
+
+/// A polygon within a convex one (Sutherland & Hodgman 1974).
+fn clipped(mut polygon: Vec<[f64; 2]>, outline: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    for k in 0..outline.len() {
+        let (a, b) = (outline[k], outline[(k + 1) % outline.len()]);
+        let mut inside = Vec::new();
+        for i in 0..polygon.len() {
+            let (p, q) = (polygon[i], polygon[(i + 1) % polygon.len()]);
+            let (at_p, at_q) = (turn(a, b, p), turn(a, b, q));
+            if at_p >= 0.0 {
+                inside.push(p);
+            }
+            if at_p * at_q < 0.0 {
+                let part = at_p / (at_p - at_q);
+                inside.push([p[0] + part * (q[0] - p[0]), p[1] + part * (q[1] - p[1])]);
+            }
+        }
+        polygon = inside;
+    }
+    polygon
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Model;
+
+    /// A column of 1 × 1 × 4 m, its lower corner so far from that of a floor, under gravity with a level part.
+    fn found(penalty_pa: f64, level_m_s2: f64, at_x_m: f64) -> Option<Lean> {
+        let text = format!(
+            "(title: \"t\", time: (step_s: 1e-3, end_s: 1), gravity_m_s2: ({level_m_s2}, 0, -9.81),
+             materials: [(name: \"rock\", young_pa: 2e10, poisson: 0.25, density_kg_m3: 2500)],
+             blocks: [(name: \"floor\", material: \"rock\", body: Fixed, shape: Box(size_m: (4, 3, 1), cells: (2, 1, 1)), at_m: (-2, -1, -1)),
+                 (name: \"column\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 4), cells: (1, 1, 1)), at_m: ({at_x_m}, 0, 0))],
+             contact: Potential(penalty_pa: {penalty_pa}, potential: Smooth(reference_m: 1), friction: (friction_deg: 60)))"
+        );
+        let loaded = ndda_io::read::load_text("t.ron", &text, &[], None).unwrap();
+        let scene = loaded.scene.clone();
+        worst(&scene, &Model::new(loaded, std::path::Path::new(".")).unwrap().simulation)
+    }
+
+    #[test]
+    fn a_weight_near_an_edge_is_measured_by_its_distance_from_it() {
+        // tan α = 0.2: the foot is 0.1 m from the edge.
+        let lean = found(2e8, 0.2 * 9.81, 0.0).unwrap();
+        let exact = 2500.0 * 4.0 * 9.81 * 2.0 * 1.04 / (9.0 * 2e8 * 1e-3);
+        assert!(
+            (lean.inside_m - 0.1).abs() < 1e-9 && (lean.m / exact - 1.0).abs() < 1e-6,
+            "{lean:?}, {exact}"
+        );
+        assert!(lean.to_string().contains("100 mm inside the edge"), "{lean}");
+        assert_eq!(found(1e10, 0.2 * 9.81, 0.0), None, "contact is stiff");
+        assert_eq!(found(2e8, 0.0, 0.0), None, "its weight acts in the middle");
+        assert_eq!(found(2e8, 0.3 * 9.81, 0.0), None, "its weight acts beyond the edge, so that it topples");
+    }
+
+    #[test]
+    fn the_edge_is_that_of_what_a_block_rests_on() {
+        // The floor ends at x = 2: 0.55 m of the base lie on it.
+        let lean = found(2e8, 0.0, 1.45).unwrap();
+        assert!((lean.inside_m - 0.05).abs() < 1e-9, "{lean:?}");
+        assert!(lean.to_string().contains("so that it falls"), "{lean}");
+    }
+}
