@@ -261,7 +261,7 @@ mod tests {
             (lean.inside_m - 0.1).abs() < 1e-9 && (lean.m / exact - 1.0).abs() < 1e-6,
             "{lean:?}, {exact}"
         );
-        assert!(lean.to_string().contains("100 mm inside the edge"), "{lean}");
+        assert!(lean.to_string().contains("100.0 mm inside the edge"), "{lean}");
         assert_eq!(found(1e10, 0.2 * 9.81, 0.0), None, "contact is stiff");
         assert_eq!(found(2e8, 0.0, 0.0), None, "its weight acts in the middle");
         assert_eq!(found(2e8, 0.3 * 9.81, 0.0), None, "its weight acts beyond the edge, so that it topples");

@@ -25,7 +25,7 @@ pub(crate) struct Finding {
     pub what: &'static str,
     /// Its value.
     pub value: f64,
-    /// The largest one that resolves waves.
+    /// The largest one that is right.
     pub limit: f64,
     /// What is wrong where it is larger, and the cure.
     pub reason: String,

@@ -381,7 +381,7 @@ mod tests {
         let said = message(&["time.end_s=1e-4"]);
         assert!(said.ends_with("(set by --set time.end_s=1e-4)"), "{said}");
         let said = message(&["time.step_s=1e-9", "time.end_s=1e6"]);
-        assert!(said.ends_with("(set by --set time.step_s=1e-9, --set time.end_s=1e6)"), "{said}");
+        assert!(said.ends_with("(set by --set time.end_s=1e6, --set time.step_s=1e-9)"), "{said}");
         let said = message(&["time.end_s=2", "materials.rock.young_pa=-1"]);
         assert!(said.ends_with("(set by --set materials.rock.young_pa=-1)"), "{said}");
     }

@@ -51,7 +51,7 @@ pub fn text_of(path: &Path) -> Result<String, SceneErrors> {
         false => "check the path of the scene file".into(),
     };
     let bytes = read.map_err(|e| match e.kind() {
-        std::io::ErrorKind::NotFound => unreadable("there is no such file".into(), &help),
+        std::io::ErrorKind::NotFound => unreadable("cannot be read: there is no such file".into(), &help),
         _ => unreadable(format!("cannot be read: {e}"), &help),
     })?;
     String::from_utf8(bytes).map_err(|e| {

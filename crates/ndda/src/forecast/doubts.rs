@@ -21,7 +21,7 @@ const HARD: f64 = 1.0;
 /// Young's modulus below which no rock has one [Pa].
 const SOFTEST_PA: f64 = 1e6;
 /// Overlap at rest over the size of blocks from which on it is a doubt.
-const DEEP: f64 = 0.05;
+pub const DEEP: f64 = 0.05;
 
 /// Doubts about a scene whose files are in `folder`; `advice` is the forecast of its contact.
 pub fn doubts(scene: &Scene, simulation: &Simulation, advice: Option<&Advice>, folder: &Path) -> Vec<String> {
@@ -48,7 +48,11 @@ pub fn doubts(scene: &Scene, simulation: &Simulation, advice: Option<&Advice>, f
     }
     doubts.extend(lean::worst(scene, simulation).map(|lean| lean.to_string()));
     // The depth of contact at rest says more than the ratio of two stiffnesses.
-    doubts.extend(depth(scene, simulation).or_else(|| penalty(scene, simulation, *penalty_pa, potential)));
+    doubts.extend(
+        depth(scene, simulation)
+            .map(|(_, words)| words)
+            .or_else(|| penalty(scene, simulation, *penalty_pa, potential)),
+    );
     doubts
 }
 
@@ -63,16 +67,17 @@ fn ramp(scene: &Scene) -> Option<String> {
     })
 }
 
-/// Whether the weight of the rock presses blocks far into each other.
-fn depth(scene: &Scene, simulation: &Simulation) -> Option<String> {
+/// Whether the weight of the rock presses blocks far into each other: by what part of their size, and in words.
+pub fn depth(scene: &Scene, simulation: &Simulation) -> Option<(f64, String)> {
     let resting = choose::resting(scene, simulation.blocks())?;
     (resting.overlap > DEEP).then(|| {
-        format!(
+        let words = format!(
             "blocks overlap by up to {:.0} % of their size at rest under {}, and may sink through each other: give a penalty_pa of {:.0e}, or leave it out",
             100.0 * resting.overlap,
             resting.under,
             resting.penalty_pa
-        )
+        );
+        (resting.overlap, words)
     })
 }
 

@@ -9,11 +9,13 @@ use ndda_io::summary::{
 use ndda_mesh::Vec3;
 use ndda_solver::{BoltStatus, Simulation, StepCounts};
 
+use crate::forecast::doubts;
 use crate::judge::reference;
 use crate::judge::verdict;
 use crate::lean;
 use crate::machine;
 use crate::run::recorder::Recorder;
+use crate::waves::Finding;
 
 /// Input of the summary besides the simulation.
 pub struct Ending<'a> {
@@ -50,11 +52,14 @@ pub fn summarise(simulation: &Simulation, recorder: &Recorder, ending: Ending) -
         verdicts.0.retain(|(name, _)| name != verdict::UNMEASURED);
     }
     let mut label = verdict::label(simulation, ending.stopped_by.as_deref());
-    if let Some(lean) = lean::worst(ending.scene, simulation).filter(|_| label.word != LabelWord::Stopped) {
-        let verdict = Verdict { value: Some(lean.m), limit: Some(lean::MOST), verdict: Judgement::Warn };
-        verdicts.0.push(("lean over an edge that gives way".into(), verdict));
-        label.word = LabelWord::Inaccurate;
-        label.reasons.push(lean.to_string());
+    if label.word != LabelWord::Stopped {
+        for found in at_the_start(ending.scene, simulation) {
+            let verdict =
+                Verdict { value: Some(found.value), limit: Some(found.limit), verdict: Judgement::Warn };
+            verdicts.0.push((found.what.into(), verdict));
+            label.word = LabelWord::Inaccurate;
+            label.reasons.push(found.reason);
+        }
     }
     let beyond = verdicts.0.iter().any(|(_, v)| v.verdict == Judgement::Fail);
     let failed = ending.strict && (beyond || label.word == LabelWord::Inaccurate);
@@ -102,6 +107,24 @@ pub fn summarise(simulation: &Simulation, recorder: &Recorder, ending: Ending) -
         reference: reference_error(ending.scene, recorder),
         warnings,
     }
+}
+
+/// What makes a run inaccurate from its start on: blocks that lean over an edge, and contact that is deep at rest beside the blocks, which may be far smaller
+/// than the elements over which penetration is judged.
+fn at_the_start(scene: &Scene, simulation: &Simulation) -> Vec<Finding> {
+    let lean = lean::worst(scene, simulation).map(|lean| Finding {
+        what: "lean over an edge that gives way",
+        value: lean.m,
+        limit: lean::MOST,
+        reason: lean.to_string(),
+    });
+    let deep = doubts::depth(scene, simulation).map(|(overlap, reason)| Finding {
+        what: "overlap at rest / block size",
+        value: overlap,
+        limit: doubts::DEEP,
+        reason,
+    });
+    lean.into_iter().chain(deep).collect()
 }
 
 fn counts(simulation: &Simulation) -> Counts {
