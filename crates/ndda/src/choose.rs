@@ -8,7 +8,7 @@
 //! compliant as half a block. The result is rounded up to 1, 2 or 5 times a power of ten.
 //! Columns that stand free tilt on contact that gives way: with the width b and the height H of the box that has the second moments of a block, 3 b²/H takes the place of s
 //! in the first where it is smaller. A column whose weight acts d inside the edge of its base stands as long as
-//! M = W H L₀/(18 k_n w d³) < 4/27 (`docs/theory/contact.md`).
+//! M = N H L₀/(18 k_n w d³) < 4/27, N being its weight and w the length of the edge (`docs/theory/contact.md`).
 //!
 //! **Step.** The smallest of these, rounded down in the same way: a quarter of what the contact stability number allows (half of the step that `forecast::step` advises), a
 //! hundredth of the run, a tenth of the ramp of gravity and of the shortest time between rows of loads, a tenth of the height of a
@@ -301,7 +301,7 @@ fn penalty(scene: &mut Scene, sizes: &Sizes) -> Option<Chosen> {
         let (size, weight) = (metres(overlaps_m), sizes.weight());
         let why = match is_slender {
             true => format!(
-                "columns hardly lean: they overlap by at most {depth_ratio:e} of {size}, three times the square of their width over their height, at rest under {weight}"
+                "so that columns hardly lean: contact at rest under {weight} is at most {depth_ratio:e} of {size} deep; {size} is 3 × width²/height of the slenderest"
             ),
             false => format!(
                 "blocks of {size} overlap by at most {depth_ratio:e} of their size at rest under {weight}"

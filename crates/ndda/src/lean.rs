@@ -1,7 +1,7 @@
 //! Blocks whose weight acts near the edge of their base, where contact gives way and lets them lean, or fall.
 //!
 //! A weight N that acts d inside the edge presses on a strip of 3 d. With the height h of the mass centre above the base, the width w of the base
-//! along the edge, and α between gravity and the normal of the base, what contact gives way takes the part 1 − x of d, x² (1 − x) = M,
+//! along the edge, and α between gravity and the normal of the base, the tilt takes the part 1 − x of d, x² (1 − x) = M,
 //! M = N h L₀/(9 k_n w d³ cos²α). Beyond M = 4/27 there is no such x, and the block falls, although a rigid edge would hold it.
 
 use std::fmt;
@@ -13,7 +13,7 @@ use ndda_solver::{BodyKind, Simulation};
 
 use crate::numbers::length;
 
-/// M from which on a block leans by more than a twentieth of d.
+/// M beyond which the weight moves by more than 6 % of d.
 pub const MOST: f64 = 0.05;
 /// M from which on it falls.
 const FALLS: f64 = 4.0 / 27.0;
@@ -46,11 +46,15 @@ impl fmt::Display for Lean {
         let inside = length(*inside_m);
         write!(
             f,
-            "the weight of block `{block}` acts {inside} inside the edge of its base, where contact gives way "
+            "the weight of block `{block}` acts {inside} inside the edge of its base, and contact is too soft there: "
         )?;
         match *m < FALLS {
-            true => write!(f, "and takes {:.0} % of that, limit 6 %", 100.0 * (1.0 - left(*m)))?,
-            false => write!(f, "so that it falls, which a rigid edge would prevent")?,
+            true => write!(
+                f,
+                "the block leans, and its weight moves {:.0} % of the way to the edge, limit 6 %",
+                100.0 * (1.0 - left(*m))
+            )?,
+            false => write!(f, "the block falls, although a rigid edge would hold it")?,
         }
         write!(f, ": raise penalty_pa to {penalty_pa:.0e}")
     }
@@ -272,6 +276,6 @@ mod tests {
         // The floor ends at x = 2: 0.55 m of the base lie on it.
         let lean = found(2e8, 0.0, 1.45).unwrap();
         assert!((lean.inside_m - 0.05).abs() < 1e-9, "{lean:?}");
-        assert!(lean.to_string().contains("so that it falls"), "{lean}");
+        assert!(lean.to_string().contains("the block falls"), "{lean}");
     }
 }

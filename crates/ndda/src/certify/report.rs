@@ -62,8 +62,9 @@ fn label(certificate: &Certificate, place: usize) -> String {
     if place > SHORTEST || wide == 0 || *label != LabelWord::Accurate.as_str() {
         return label.clone();
     }
-    let (all, bars) = (certificate.quantities.len(), if wide == 1 { "error bar" } else { "error bars" });
-    format!("{label} by its checks, but {wide} of {all} {bars} above 1 % of the largest value")
+    let (all, bars) =
+        (certificate.quantities.len(), if wide == 1 { "error bar is" } else { "error bars are" });
+    format!("{label} by its checks, but {wide} of {all} {bars} larger than 1 % of the largest value")
 }
 
 /// The quantities that are shown, and how many are not.

@@ -234,10 +234,10 @@ fn remark(certificate: &mut Certificate, plan: &Plan, wanted: &Wanted, summary: 
     if spread > 0 && certificate.chaos.is_none() {
         say(format!(
             "{spread} of {all} quantities {} three times the largest difference. \
-             Shorter steps may resolve them: --set time.step_s={:e}",
+             Shorter steps may help: --set time.step_s={:e}",
             match spread {
-                1 => "does not converge at these steps; its error is",
-                _ => "do not converge at these steps; their error is",
+                1 => "does not converge at these steps; its error bar is",
+                _ => "do not converge at these steps; their error bars are",
             },
             plan.step_s(2)
         ));

@@ -115,11 +115,11 @@ fn penalty(scene: &Scene, simulation: &Simulation, penalty_pa: f64, potential: &
     };
     let advised = match choose::resting(scene, simulation.blocks()) {
         Some(resting) => {
-            format!("{:.0e} suits this scene, which is chosen if none is given", resting.penalty_pa)
+            format!("{:.0e} suits this scene; it is chosen if penalty_pa is left out", resting.penalty_pa)
         }
         None => format!("{:.0e} to {:.0e} suits most scenes", 1e-4 * stiffest_pa, 1e-2 * stiffest_pa),
     };
     Some(format!(
-        "contact is very {what} (its pressure per metre of penetration is {ratio:.0e} of Young's modulus); a penalty_pa of {advised}"
+        "contact is very {what} (penalty_pa over the reference length is {ratio:.0e} of Young's modulus per metre); a penalty_pa of {advised}"
     ))
 }

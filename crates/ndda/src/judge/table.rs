@@ -44,14 +44,14 @@ pub fn ending(summary: &Summary) -> String {
     // Numbers that the table of all checks shows, too, without a limit to pass or before they can be judged.
     let shown = match summary.verdicts.0.len() - passed - bad.len() {
         0 => String::new(),
-        others => format!(" and {others} only shown"),
+        others => format!("; {others} more have no limit"),
     };
     if bad.is_empty() && passed > 0 {
         text.push_str(&format!("{passed} checks passed{shown}\n"));
     } else if !bad.is_empty() {
         text.push_str(&format!(
-            "{passed} checks passed{shown}, {} did not:\n{}\n",
-            bad.len(),
+            "{} failed, {passed} passed{shown}:\n{}\n",
+            counted(bad.len(), "check", "checks"),
             verdict_table(bad.into_iter())
         ));
     }

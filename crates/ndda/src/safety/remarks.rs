@@ -73,7 +73,7 @@ fn not_standing(answer: &Safety) -> Option<String> {
         }
         (false, true) => {
             format!(
-                "{goes}: hold it by a support, or correct its loads, its water or its shape; raise the penalty if it topples near its limit, since edges give way"
+                "{goes}: hold what moves by supports, or correct its loads, its water or its shape. If it topples with its weight still just inside the edge of its base, contact is too soft: raise penalty_pa"
             )
         }
         (false, false) => {

@@ -23,7 +23,8 @@ pub fn text(safety: &Safety) -> String {
     let answer = match safety.factor_of_safety {
         Bracket { upper: Some(upper), .. } if !safety.stands_as_drawn() => {
             format!(
-                "does not stand as drawn, even with joints {STRONGEST} times as strong: factor of safety below {upper:.3}"
+                "does not stand as drawn, even with joints {STRONGEST} times as strong: factor of safety below {:.3}",
+                (1e3 * upper).ceil() / 1e3
             )
         }
         Bracket { lower: Some(lower), upper: Some(upper) } => {

@@ -273,9 +273,11 @@ impl Check<'_> {
             if is_set(joint)
                 && rock.joints[..k].iter().any(|other| is_set(other) && other.name() == joint.name())
             {
-                let message =
-                    format!("two sets are named `{}`: laws and results take them for one", joint.name());
-                let help = "give each set its own name, unless that is meant";
+                let message = format!(
+                    "two joint sets are named `{}`: properties of joints and results treat them as one",
+                    joint.name()
+                );
+                let help = "give each set its own name, unless they are to be one";
                 self.warn(Code::BadName, format!("{path}.joints[{k}].name"), message, help);
             }
         }

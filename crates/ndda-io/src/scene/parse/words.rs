@@ -113,7 +113,7 @@ fn example(field: &str) -> &'static str {
         "young_pa" => "Gigapascal(20)",
         "poisson" => "0.25",
         "density_kg_m3" => "2650",
-        "end_s" => "1, the time that is computed",
+        "end_s" => "1, the time to simulate in seconds",
         _ => "…,",
     }
 }

@@ -26,7 +26,7 @@ pub(super) const SETTLE: &str = "`settle: ()` (in place of gravity_ramp_s)";
 pub(super) fn creep(simulation: &Simulation) -> [Entry; 2] {
     let worst = simulation.invariants();
     let (place, speed) = (worst.creep_place, worst.creep_speed);
-    let cure = "because vibrating contact makes its shear springs slip: give the contact a restitution below 1, add `settle: ()` or gravity_ramp_s, one of the two, or remove shear_penalty_pa_m";
+    let cure = "because vibrating contact makes its shear springs slip: give the contact a restitution below 1, or add `settle: ()`, or gravity_ramp_s (not together with settle), or remove shear_penalty_pa_m";
     let where_it_is = format!(
         "block `{}` crept by {:.2} of its smallest element size, limit {PLACE}, {cure}",
         name(simulation, place),
@@ -73,7 +73,7 @@ pub(super) fn chatter(simulation: &Simulation) -> Option<Entry> {
 pub(super) fn rebound(simulation: &Simulation) -> Option<Entry> {
     let worst = simulation.invariants().rebound_speed;
     let reason = format!(
-        "block `{}` may slide too fast by about {:.1} % of the largest speed, limit {:.0} %: it stuck and slipped while its contact rebounded from gravity, the more the softer contact is; raise penalty_pa, set gravity_ramp_s, or begin with {SETTLE}",
+        "block `{}` may slide too fast by about {:.1} % of the largest speed, limit {:.0} %: when gravity began to act at once, its contact rebounded and the block stuck and slipped in turn; raise penalty_pa (softer contact rebounds more), or let gravity grow over a gravity_ramp_s that is long beside these rebounds",
         name(simulation, worst),
         100.0 * worst.value,
         100.0 * SPEED
