@@ -44,6 +44,7 @@ pub fn ending(summary: &Summary) -> String {
     // Numbers that the table of all checks shows, too, without a limit to pass or before they can be judged.
     let shown = match summary.verdicts.0.len() - passed - bad.len() {
         0 => String::new(),
+        1 => "; 1 more has no limit".into(),
         others => format!("; {others} more have no limit"),
     };
     if bad.is_empty() && passed > 0 {
