@@ -35,7 +35,7 @@ fn a_block_that_does_not_stand_as_drawn_has_no_factor_but_a_bound() {
     let told = safety::text(&safety);
     assert!(
         told.contains(
-            "does not stand as drawn, even with joints 32 times as strong: factor of safety below 0.031"
+            "does not stand as drawn, even with joints 32 times as strong: factor of safety below 0.032"
         ),
         "{told}"
     );
