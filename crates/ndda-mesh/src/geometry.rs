@@ -17,6 +17,7 @@ pub fn triangle_area_vector(corners: &[Vec3; 3]) -> Vec3 {
 }
 
 /// How far points reach below a plane through `point` with an outward unit normal [m].
+#[inline]
 pub fn reach_below<'a>(normal: &Vec3, point: &Vec3, points: impl IntoIterator<Item = &'a Vec3>) -> f64 {
     points.into_iter().map(|x| normal.dot(&(point - x))).fold(0.0, f64::max)
 }
@@ -37,6 +38,7 @@ pub fn distance_to_triangle(p: &Vec3, [a, b, c]: &[Vec3; 3]) -> f64 {
 }
 
 /// Heights of a tetrahedron over its four faces [m]: 3 V / A, face `i` being opposite to corner `i`.
+#[inline]
 pub fn tet_heights(corners: &[Vec3; 4]) -> [f64; 4] {
     let volume = tet_volume(corners).abs();
     TET_FACES.map(|face| 3.0 * volume / triangle_area_vector(&face.map(|i| corners[i])).norm())
