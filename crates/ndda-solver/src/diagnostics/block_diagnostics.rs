@@ -255,18 +255,6 @@ impl BlockDiagnostics {
         });
     }
 
-    /// Largest error of a velocity for ringing, over a speed; what rounding may have done does not count.
-    pub(crate) fn ringing(&self, speed_m_s: f64, rounding_j: f64) -> Worst {
-        let mut worst = Worst::default();
-        for (block, (balance, scale)) in self.balances.iter().zip(&self.scales).enumerate() {
-            let error_m_s = balance.ringing.error_m_s();
-            if 0.5 * scale.mass_kg * error_m_s * error_m_s > rounding_j {
-                worst.take(error_m_s / speed_m_s, block);
-            }
-        }
-        worst
-    }
-
     /// Records the lateral drift of a clamped block in a step.
     pub(crate) fn add_lateral_drift(&mut self, block: BlockId, dt_s: f64, drift: &LateralDrift) {
         let balance = &mut self.balances[block.index()];

@@ -120,7 +120,7 @@ impl Rebound {
         if is_along && gained_m_s <= mean_m_s.min(fastest_m_s) { gained_m_s } else { 0.0 }
     }
 
-    /// What rebounds have added to the speed of a block that slid on [m/s].
+    /// Speed that a sliding block has gained in rebounds [m/s].
     pub(crate) fn gained_m_s(&self) -> f64 {
         self.gained_m_s
     }

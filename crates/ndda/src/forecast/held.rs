@@ -32,7 +32,7 @@ fn nothing_is(scene: &Scene, blocks: &BlockSet) -> bool {
     scene.gravity_m_s2 != [0.0; 3] && blocks.len() > 1 && !held && all_move()
 }
 
-/// What is said where nothing loads the blocks.
+/// Warning of a scene in which nothing loads the blocks.
 const NOTHING_LOADS: &str =
     "nothing but overlaps loads the blocks: there is no gravity, force, pressure, stress, speed or motion";
 /// Its cure.

@@ -103,7 +103,7 @@ fn bare_number(text: &str, at: usize, path: &str) -> Option<String> {
     }
 }
 
-/// What stands behind the name of a field that is missing.
+/// An example of the value of a field that is missing.
 fn example(field: &str) -> &'static str {
     match field {
         "cells" => "(1, 1, 1), the number of cells along x, y and z; more for blocks that deform",

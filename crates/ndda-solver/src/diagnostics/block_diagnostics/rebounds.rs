@@ -1,6 +1,6 @@
-//! The worst hops and rebounds of all blocks.
+//! The worst hops, rebounds and ringing of all blocks.
 
-use super::BlockDiagnostics;
+use super::{BlockBalance, BlockDiagnostics};
 use crate::diagnostics::worst::Worst;
 
 impl BlockDiagnostics {
@@ -21,11 +21,21 @@ impl BlockDiagnostics {
 
     /// Largest speed that rebounds of contact have added to a block that slides, over a speed; what rounding may have done does not count.
     pub(crate) fn rebound(&self, speed_m_s: f64, rounding_j: f64) -> Worst {
+        self.worst_speed(speed_m_s, rounding_j, |balance| balance.rebound.gained_m_s())
+    }
+
+    /// Largest error of a velocity for ringing, over a speed; what rounding may have done does not count.
+    pub(crate) fn ringing(&self, speed_m_s: f64, rounding_j: f64) -> Worst {
+        self.worst_speed(speed_m_s, rounding_j, |balance| balance.ringing.error_m_s())
+    }
+
+    /// Largest of a speed [m/s] of each block over another, where its kinetic energy is more than rounding.
+    fn worst_speed(&self, over_m_s: f64, rounding_j: f64, of: impl Fn(&BlockBalance) -> f64) -> Worst {
         let mut worst = Worst::default();
         for (block, (balance, scale)) in self.balances.iter().zip(&self.scales).enumerate() {
-            let gained_m_s = balance.rebound.gained_m_s();
-            if 0.5 * scale.mass_kg * gained_m_s * gained_m_s > rounding_j {
-                worst.take(gained_m_s / speed_m_s, block);
+            let own_m_s = of(balance);
+            if 0.5 * scale.mass_kg * own_m_s * own_m_s > rounding_j {
+                worst.take(own_m_s / over_m_s, block);
             }
         }
         worst
