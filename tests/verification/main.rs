@@ -30,6 +30,7 @@ mod elastic_waves;
 mod end_contact;
 mod evidence;
 mod extreme;
+mod flat_impact;
 mod free_field;
 mod free_flight;
 mod friction_of_patches;

@@ -304,7 +304,7 @@ pub struct HowArgs {
     #[arg(long)]
     pub strict: bool,
     /// After an accurate run, run the scene a second time from a slightly different start, to see whether small differences grow: auto (where three
-    /// or more blocks move), always or never. The second run doubles the computing time.
+    /// or more blocks move, or one hops again and again), always or never. The second run doubles the computing time.
     #[arg(long, value_name = "WHEN", default_value = "auto")]
     pub sensitivity: Sensitivity,
     /// Print nothing but errors.

@@ -29,6 +29,8 @@ pub(crate) struct Hops {
     /// Flights in a row that were longer than the one before, and the most so far.
     growing: u32,
     most: u32,
+    /// Flights after a touch with friction.
+    rubbed_flights: u32,
     /// Length of this touch [s], and what contact has added to the velocity of the block in it [m/s].
     touch_s: f64,
     push_m_s: Vec3,
@@ -55,6 +57,7 @@ impl Hops {
     }
 
     fn land(&mut self, speed_m_s: f64) {
+        self.rubbed_flights += u32::from(self.rubbed && self.flight_s > 0.0);
         let grows = self.rubbed && self.last_flight_s > 0.0 && self.flight_s > GROWTH * self.last_flight_s;
         self.growing = if grows { self.growing + 1 } else { 0 };
         self.most = self.most.max(self.growing);
@@ -71,6 +74,11 @@ impl Hops {
     /// Most flights in a row that were each longer than the one before, friction acting in between.
     pub(crate) fn most(&self) -> u32 {
         self.most
+    }
+
+    /// Flights that came after a touch in which friction acted.
+    pub(crate) fn with_friction(&self) -> u32 {
+        self.rubbed_flights
     }
 
     /// Flights that were hardly longer than the touch before, in which friction acted and could stop the block, and the largest speed at which one ended [m/s].
@@ -120,6 +128,19 @@ mod tests {
         assert_eq!(short(2, 15, false, 500.0), (0, 0.0));
         // It moves more than three times as fast as contact pushes it.
         assert_eq!(short(2, 15, true, 300.0), (0, 0.0));
+    }
+
+    #[test]
+    fn flights_count_from_the_second_touch_on_where_friction_acted() {
+        let counted = |has_friction: bool| {
+            let mut hops = Hops::default();
+            let on_ground = RigidForcing { touches: true, has_friction, ..RigidForcing::default() };
+            for drive in [RigidForcing::default(), on_ground, on_ground, RigidForcing::default(), on_ground] {
+                hops.add(1e-3, &drive);
+            }
+            hops.with_friction()
+        };
+        assert_eq!((counted(true), counted(false)), (1, 0));
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Whether single positions of a run mean anything: a twin that begins with other velocities, by a ten-thousandth of the largest speed, and
-//! ends somewhere else where the motion is sensitive, as in heaps, falling columns and toppling slopes.
+//! ends somewhere else, or with other velocities, where the motion is sensitive, as in heaps, falling columns, toppling slopes, and where a block hops on
+//! contact that is not damped.
 
 use std::fmt;
 use std::ops::ControlFlow;
@@ -19,7 +20,7 @@ use crate::numbers::{counted, length};
 /// Whether a twin of the run is run after it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Sensitivity {
-    /// Where three or more blocks have moved in an accurate run.
+    /// Where three or more blocks have moved in an accurate run, or one has hopped several times with friction in between.
     #[default]
     Auto,
     /// After each accurate run with contact.
@@ -47,18 +48,26 @@ const PUSH: f64 = 1e-4;
 const AWAY: f64 = 0.03;
 /// Without growth, a push shifts a block by its speed times the time of the run; this many times that is no growth.
 const DRIFTS: f64 = 3.0;
+/// Velocities of the twin may differ by this part of the largest speed, as in an accurate label.
+const FASTER: f64 = 0.01;
 /// So many blocks must move for their motions to disturb each other.
 const ENOUGH: usize = 3;
+/// So many hops of one block, with friction in between, make small differences grow.
+const HOPS: f64 = 8.0;
 
 /// Where a run and its twin part.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parted {
-    /// Name of the block that ends farthest from where it ends in the run, over its height.
+    /// Name of the block whose end differs most, over what is allowed.
     pub block: String,
-    /// How far [m].
+    /// How far it ends from where it ends in the run [m].
     pub apart_m: f64,
-    /// How many blocks end farther away than allowed.
+    /// By how much its velocity differs [m/s], where that is what is too much.
+    pub faster_m_s: Option<f64>,
+    /// How many blocks differ more than allowed.
     pub blocks: usize,
+    /// Whether a block hopped many times with friction in between.
+    pub hops: bool,
 }
 
 /// Whether a run that begins here makes a twin, by default, if its blocks move far enough.
@@ -82,7 +91,7 @@ impl Sensitivity {
             && match self {
                 Self::Never => false,
                 Self::Always => ids().any(|block| moves(simulation, block)),
-                Self::Auto => moved().take(ENOUGH).count() == ENOUGH,
+                Self::Auto => moved().take(ENOUGH).count() == ENOUGH || hops(simulation),
             }
     }
 }
@@ -121,14 +130,24 @@ pub(super) fn judge(
 
 impl fmt::Display for Parted {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let Self { block, apart_m, blocks } = self;
+        let Self { block, apart_m, faster_m_s, blocks, hops } = self;
+        let many = counted(*blocks, "block differs", "blocks differ");
+        let (ends, by, single) = match faster_m_s {
+            Some(faster) => ("with other velocities", format!("{faster:.1e} m/s"), "velocities"),
+            None => ("elsewhere", length(*apart_m), "positions"),
+        };
         write!(
             f,
-            "a start that differs by 1e-4 of the largest speed ends elsewhere: {} differ, `{block}` by {}; believe the \
-             overall behaviour or statistics of several runs (ndda certify), not the positions of single blocks",
-            counted(*blocks, "block", "blocks"),
-            length(*apart_m)
-        )
+            "a start that differs by 1e-4 of the largest speed ends {ends}: {many}, `{block}` by {by}; believe the overall behaviour or \
+             statistics of several runs (ndda certify), not the {single} of single blocks"
+        )?;
+        if *hops {
+            write!(
+                f,
+                "; blocks hop because contact is not damped: a restitution of 0.5 ends that, or `settle: ()` where gravity starts it"
+            )?;
+        }
+        Ok(())
     }
 }
 
@@ -147,7 +166,7 @@ pub(super) fn part(
     let push_m_s = PUSH * simulation.speed_scale_m_s();
     let time_s = simulation.time_s();
     let outcome = run(simulation, start, (push_m_s, end.state.step), settle, stop);
-    let twin = simulation.state().position.clone();
+    let twin = (simulation.state().position.clone(), simulation.state().velocity.clone());
     simulation.restore(end).expect("it is of this simulation");
     let whole = outcome?;
     Ok(whole.then(|| compare(simulation, &twin, DRIFTS * push_m_s * time_s)).flatten())
@@ -180,15 +199,37 @@ fn run(
     Ok(true)
 }
 
-fn compare(simulation: &Simulation, twin: &[Vec3], drift_m: f64) -> Option<Parted> {
-    let away = |block: &BlockId| {
-        let apart_m = farthest(simulation, *block, &simulation.state().position, twin);
-        (apart_m, apart_m / (AWAY * height_m(simulation, *block) + drift_m))
+/// Where positions and velocities of the twin are too far from those of the run. A velocity counts only where the position has gone farther than the
+/// difference at the start would take it by itself: in the middle of a collision, a moment makes all the difference.
+fn compare(simulation: &Simulation, twin: &(Vec<Vec3>, Vec<Vec3>), drift_m: f64) -> Option<Parted> {
+    let state = simulation.state();
+    let largest_m_s = simulation.speed_scale_m_s();
+    let ids = || simulation.blocks().ids();
+    let parted = |block: BlockId| {
+        let apart_m = farthest(simulation, block, &state.position, &twin.0);
+        let faster_m_s = farthest(simulation, block, &state.velocity, &twin.1);
+        let place = apart_m / (AWAY * height_m(simulation, block) + drift_m);
+        let speed = if apart_m > drift_m { faster_m_s / (FASTER * largest_m_s) } else { 0.0 };
+        (block, place, speed, apart_m, faster_m_s)
     };
-    let blocks = || simulation.blocks().ids().map(|block| (block, away(&block)));
-    let (block, (apart_m, _)) = blocks().max_by(|a, b| a.1.1.total_cmp(&b.1.1)).filter(|b| b.1.1 > 1.0)?;
-    let count = blocks().filter(|(_, (_, over))| *over > 1.0).count();
-    Some(Parted { block: simulation.blocks().names[block.index()].clone(), apart_m, blocks: count })
+    let all: Vec<_> = ids().map(parted).collect();
+    // A position that is elsewhere says more than a velocity.
+    let place = all.iter().max_by(|a, b| a.1.total_cmp(&b.1)).filter(|b| b.1 > 1.0);
+    let speed = all.iter().max_by(|a, b| a.2.total_cmp(&b.2)).filter(|b| b.2 > 1.0);
+    let &(block, _, _, apart_m, faster_m_s) = place.or(speed)?;
+    let over = |value: &(BlockId, f64, f64, f64, f64)| if place.is_some() { value.1 } else { value.2 };
+    Some(Parted {
+        block: simulation.blocks().names[block.index()].clone(),
+        apart_m,
+        faster_m_s: place.is_none().then_some(faster_m_s),
+        blocks: all.iter().filter(|value| over(value) > 1.0).count(),
+        hops: hops(simulation),
+    })
+}
+
+/// Whether a block has hopped many times with friction in between.
+fn hops(simulation: &Simulation) -> bool {
+    simulation.invariants().hops_with_friction.value >= HOPS
 }
 
 /// Whether a block moves as forces ask.
@@ -272,6 +313,24 @@ mod tests {
         let summary = label("(5.5, 0, -8.1)", (2e9, 2e-4), &sliding, Sensitivity::Auto);
         assert_eq!(summary.label.word, LabelWord::Accurate, "{:?}", summary.label.reasons);
         assert!(summary.stages_s.0.iter().any(|(stage, _)| stage == "sensitivity"));
+    }
+
+    #[test]
+    fn a_cube_that_hops_on_undamped_contact_is_sensitive_in_its_velocity_and_told_how_to_end_that() {
+        let text = "(title: \"pulled\", time: (step_s: 3e-5, end_s: 1), gravity_m_s2: (3.92, 0, -9.81),
+            materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.2, density_kg_m3: 2600)],
+            blocks: [
+                (name: \"floor\", material: \"rock\", body: Fixed, shape: Box(size_m: (4, 2, 0.5), cells: (1, 1, 1)), at_m: (0, 0, -0.5)),
+                (name: \"cube\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), at_m: (1, 0.5, 0)),
+            ],
+            contact: Potential(penalty_pa: 2e8, friction: (friction_deg: 35)))";
+        let summary = Run::new(Model::from_text(text).unwrap()).finish(&mut []).unwrap().summary;
+        let reason = summary.label.reasons.join("; ");
+        assert_eq!(summary.label.word, LabelWord::Sensitive, "{reason}");
+        assert!(
+            reason.contains("with other velocities") && reason.contains("restitution of 0.5"),
+            "{reason}"
+        );
     }
 
     #[test]

@@ -19,6 +19,15 @@ impl BlockDiagnostics {
         (growing, short)
     }
 
+    /// Most hops of a block with friction between them.
+    pub(crate) fn hops_with_friction(&self) -> Worst {
+        let mut worst = Worst::default();
+        for (block, balance) in self.balances.iter().enumerate() {
+            worst.take(f64::from(balance.hops.with_friction()), block);
+        }
+        worst
+    }
+
     /// Largest speed that rebounds of contact have added to a block that slides, over a speed; what rounding may have done does not count.
     pub(crate) fn rebound(&self, speed_m_s: f64, rounding_j: f64) -> Worst {
         self.worst_speed(speed_m_s, rounding_j, |balance| balance.rebound.gained_m_s())
