@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
+use ndda::summary::Status;
 use ndda::{Model, Run};
 use ndda_io::OutputFolder;
-use ndda_io::summary::Status;
 
 /// Scenes with contact, friction and spin, cut short.
 const SCENES: [(&str, &[&str]); 5] = [

@@ -5,9 +5,9 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use ndda::run::Sensitivity;
+use ndda::summary::{Status, Summary};
 use ndda::{Model, Run};
 use ndda_io::OutputFolder;
-use ndda_io::summary::{Status, Summary};
 use ndda_ranks::{Communicator, RanksError, Threads};
 use ndda_solver::{Sink, SinkError, StepError, View};
 

@@ -10,8 +10,8 @@ mod evidence;
 
 use evidence::Answer::AtMost;
 use evidence::row;
+use ndda::summary::Status;
 use ndda::{Model, Run, rockfall};
-use ndda_io::summary::Status;
 use ndda_io::{OutputFolder, read};
 use serde_json::Value;
 

@@ -2,7 +2,7 @@
 
 use ndda::Model;
 use ndda::run::{Outcome, Run};
-use ndda_io::summary::LabelWord;
+use ndda::summary::LabelWord;
 
 use crate::evidence::Answer::{AtMost, Within};
 use crate::evidence::{rounding, row};

@@ -3,7 +3,7 @@
 //! equations leave out.
 
 use ndda::judge::verdict;
-use ndda_io::summary::LabelWord;
+use ndda::summary::LabelWord;
 use ndda_mesh::{BlockId, Vec3};
 use ndda_solver::Simulation;
 

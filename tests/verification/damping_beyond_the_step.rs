@@ -2,7 +2,7 @@
 //! rigid motion.
 
 use ndda::judge::verdict;
-use ndda_io::summary::LabelWord;
+use ndda::summary::LabelWord;
 use ndda_mesh::Vec3;
 use ndda_solver::Simulation;
 

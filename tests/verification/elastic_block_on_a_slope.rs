@@ -4,7 +4,7 @@
 //! open and close, vibrations grow until the block walks down the plane, whatever its friction angle.
 
 use ndda::judge::verdict;
-use ndda_io::summary::LabelWord;
+use ndda::summary::LabelWord;
 use ndda_mesh::Vec3;
 use ndda_solver::Simulation;
 

@@ -7,7 +7,7 @@ use std::path::Path;
 use nalgebra::{Matrix2, Matrix4, Vector2, Vector4};
 use ndda::Model;
 use ndda::run::Run;
-use ndda_io::summary::LabelWord;
+use ndda::summary::LabelWord;
 use ndda_mesh::Vec3;
 use ndda_mesh::geometry::tet_volume;
 use ndda_solver::{Sink, SinkError, View};

@@ -1,7 +1,7 @@
 //! Strains of a linear material: found as they are, and told where they are too large for it.
 
 use ndda::judge::verdict;
-use ndda_io::summary::LabelWord;
+use ndda::summary::LabelWord;
 
 use crate::evidence::Answer::Within;
 use crate::evidence::row;

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 use ndda::judge::verdict;
-use ndda_io::summary::LabelWord;
+use ndda::summary::LabelWord;
 use ndda_mesh::{BlockId, Mat3, TetId, Vec3};
 use ndda_solver::Simulation;
 

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use ndda::judge::verdict;
-use ndda_io::summary::LabelWord;
+use ndda::summary::LabelWord;
 use ndda_solver::{Sample, Simulation};
 
 use crate::evidence::Answer::AtMost;

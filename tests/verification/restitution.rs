@@ -2,8 +2,8 @@
 //! rings comes to rest, and friction then holds what statics says that it holds.
 
 use ndda::judge::verdict;
+use ndda::summary::LabelWord;
 use ndda_contact::testing::Random;
-use ndda_io::summary::LabelWord;
 use ndda_mesh::{BlockId, Vec3};
 use ndda_solver::Simulation;
 

@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
+use ndda::summary::LabelWord;
 use ndda::{Model, Run};
-use ndda_io::summary::LabelWord;
 use ndda_mesh::Vec3;
 
 use crate::evidence::Answer::{AtLeast, Within};

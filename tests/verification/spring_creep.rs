@@ -3,7 +3,7 @@
 //! integration of two masses on springs and sliders creeps as fast, so that this is the law and not its implementation.
 
 use ndda::judge::verdict;
-use ndda_io::summary::LabelWord;
+use ndda::summary::LabelWord;
 use ndda_mesh::BlockId;
 use ndda_solver::{Settle, Simulation};
 

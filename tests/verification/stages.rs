@@ -2,7 +2,7 @@
 
 use ndda::Model;
 use ndda::run::{Outcome, Run};
-use ndda_io::summary::LabelWord;
+use ndda::summary::LabelWord;
 use ndda_io::table::Table;
 
 use crate::evidence::Answer::{AtMost, Near, Within};

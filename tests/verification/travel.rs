@@ -2,7 +2,7 @@
 //! thinner block, for pairs that may meet.
 
 use ndda::judge::verdict;
-use ndda_io::summary::LabelWord;
+use ndda::summary::LabelWord;
 use ndda_solver::Simulation;
 
 use crate::evidence::Answer::{AtLeast, AtMost, Near};

@@ -8,8 +8,8 @@ use std::time::{Duration, Instant};
 
 use ndda::judge::table;
 use ndda::run::{Pace, ResumeError, Resumed};
+use ndda::summary::{Status, Summary};
 use ndda::{Model, Run, RunError, places};
-use ndda_io::summary::{Status, Summary};
 use ndda_io::{OutputFolder, WriteError};
 use ndda_ranks::{Communicator, RanksError};
 use ndda_solver::{Sink, SinkError, View};

@@ -1,6 +1,6 @@
 //! Errors of a scene and of a step as Python exceptions, with the program's code, place and advice.
 
-use ndda_io::diagnostic::{Diagnostic, SceneErrors, Severity, line_column};
+use ndda_io::diagnostic::{Diagnostic, SceneErrors, Severity};
 use ndda_solver::StepError;
 use pyo3::create_exception;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
@@ -22,7 +22,7 @@ create_exception!(
 
 /// A message as a dictionary.
 pub fn diagnostic<'py>(py: Python<'py>, text: &str, found: &Diagnostic) -> PyResult<Bound<'py, PyDict>> {
-    let place = found.span.as_ref().map(|span| line_column(text, span.start));
+    let place = found.line_column(text);
     let dict = PyDict::new(py);
     let severity = if found.severity == Severity::Error { "error" } else { "warning" };
     dict.set_item("severity", severity)?;

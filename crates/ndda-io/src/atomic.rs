@@ -25,7 +25,7 @@ pub fn write(path: &Path, content: &[u8]) -> Result<(), WriteError> {
 ///
 /// # Errors
 /// As [`write`].
-pub(crate) fn write_by(
+pub fn write_by(
     path: &Path,
     content: impl FnOnce(&mut File) -> std::io::Result<()>,
 ) -> Result<(), WriteError> {

@@ -1,4 +1,4 @@
-//! Files in and out: RON scenes with their diagnostics, meshes of other programs, VTU fields, history, summary and checkpoints.
+//! Files in and out: RON scenes with their diagnostics, meshes of other programs, VTU fields, history and checkpoints.
 //!
 //! A scene is read with its values in any unit, and each mistake is found at its place:
 //!
@@ -22,15 +22,14 @@
 //! |---|---|
 //! | [`scene`] | the scene's types, reading and checking them, messages with their places, studies, records |
 //! | [`mesh`] | meshes of tetrahedra and surfaces in the formats of Gmsh, TetGen, VTK, Abaqus, STL and OBJ |
-//! | [`results`] | fields, history, tables, summary and checkpoints: written, and read back |
+//! | [`results`] | fields, history, tables and checkpoints: written, and read back |
 //! | [`atomic`] | whole files or none |
-//! | [`limited`] | files of somebody else, up to a limit of bytes |
 
 #![warn(unreachable_pub)]
 
 pub mod atomic;
 mod csv_text;
-pub mod limited;
+mod limited;
 pub mod mesh;
 pub mod results;
 pub mod scene;
@@ -38,16 +37,15 @@ mod write_error;
 
 #[cfg(feature = "tetgen")]
 pub use mesh::tetgen_fill;
-pub use mesh::{self as mesh_file, gmsh_program, msh, surface_file, vtk_file};
-pub use results::{checkpoint, summary, table, vtu};
+pub use mesh::{self as mesh_file, gmsh_program, msh, surface_file};
+pub use results::{checkpoint, table, vtu};
 #[cfg(feature = "schema")]
 pub use scene::schema;
-pub use scene::{code, diagnostic, joint_table, locate, outside_files, read, record, study, units};
+pub use scene::{code, diagnostic, joint_table, locate, outside_files, read, record, study};
 
 pub use results::bolt_lines::{BoltLine, BoltSeries};
 pub use results::folder::OutputFolder;
 pub use results::history::History;
 pub use results::pvd::FieldSeries;
-pub use summary::Summary;
 pub use vtu::Frame;
 pub use write_error::WriteError;

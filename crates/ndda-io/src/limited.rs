@@ -12,7 +12,7 @@ pub(crate) const MOST_BYTES: u64 = 1 << 28;
 ///
 /// # Errors
 /// It cannot be read, is a folder, a pipe or a device, or is larger.
-pub fn file(path: &Path) -> io::Result<Vec<u8>> {
+pub(crate) fn file(path: &Path) -> io::Result<Vec<u8>> {
     if !std::fs::metadata(path).map_err(no_file)?.is_file() {
         return Err(io::Error::other("it is a folder, a pipe or a device: name a file"));
     }
@@ -23,7 +23,7 @@ pub fn file(path: &Path) -> io::Result<Vec<u8>> {
 ///
 /// # Errors
 /// It cannot be read, or is larger.
-pub fn stream(path: &Path) -> io::Result<Vec<u8>> {
+pub(crate) fn stream(path: &Path) -> io::Result<Vec<u8>> {
     at_most(File::open(path).map_err(no_file)?, MOST_BYTES)
 }
 

@@ -22,7 +22,7 @@ pub mod terrain_grid;
 pub(crate) mod tetgen;
 #[cfg(feature = "tetgen")]
 pub mod tetgen_fill;
-pub mod vtk_file;
+pub(crate) mod vtk_file;
 
 use std::path::Path;
 
@@ -33,6 +33,7 @@ use error::{Fault, ending};
 use gmsh_program::Sizes;
 
 pub use error::{FileProblem, MeshFileError};
+pub use vtk_file::write_polyhedra;
 
 /// Endings that [`read`] knows, for messages.
 const ENDINGS: &str = ".msh, .node, .ele, .face, .vtu, .vtk, .inp, .geo, .step, .stp, .brep";

@@ -6,7 +6,6 @@ pub(crate) mod folder;
 pub(crate) mod history;
 pub(crate) mod pvd;
 mod read;
-pub mod summary;
 pub mod table;
 pub(crate) mod tables;
 pub mod vtu;
@@ -14,4 +13,4 @@ pub mod vtu;
 #[cfg(test)]
 mod testing;
 
-pub use read::{Array, BoltForces, FieldFrame, ListedFrame, ResultsError, Table};
+pub use read::{Array, BoltForces, FieldFrame, ListedFrame, Table};

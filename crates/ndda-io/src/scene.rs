@@ -4,6 +4,7 @@ mod blast;
 mod block;
 mod bolt;
 pub(crate) mod check;
+mod chosen;
 pub mod code;
 mod contact;
 pub mod diagnostic;
@@ -39,7 +40,7 @@ pub mod study;
 mod suggest;
 mod support;
 mod time;
-pub mod units;
+mod units;
 mod water;
 
 use std::collections::BTreeMap;

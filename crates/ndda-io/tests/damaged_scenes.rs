@@ -8,9 +8,32 @@ use std::sync::LazyLock;
 
 use ndda_io::locate::Node;
 use ndda_io::read::load_text;
-use ndda_io::units::DIMENSIONS;
 use proptest::prelude::*;
 use proptest::sample::Index;
+
+/// A unit of each kind of quantity, and a second one of some.
+const UNITS: [&str; 20] = [
+    "TonnePerCubicMetre",
+    "KilojoulePerSquareMetre",
+    "MeganewtonPerSquareMetre",
+    "SquareCentimetre",
+    "StandardGravity",
+    "RevolutionsPerMinute",
+    "DegreesPerSecond",
+    "PerMinute",
+    "KilometrePerHour",
+    "KilopascalPerMetre",
+    "GiganewtonPerMetre",
+    "CubicDecimetre",
+    "Degrees",
+    "Radians",
+    "Gigapascal",
+    "Millimetre",
+    "Kilometre",
+    "Kilonewton",
+    "Millisecond",
+    "Hour",
+];
 
 /// Sound scenes with the places of their values.
 static SCENES: LazyLock<Vec<(String, Vec<Range<usize>>)>> = LazyLock::new(|| {
@@ -65,7 +88,7 @@ enum Damage {
     /// A value of the scene in place of another.
     Moved(Index, Index),
     /// A value in a unit, of its own or of another quantity.
-    Unit(Index, Index, Index),
+    Unit(Index, Index),
     /// A value left out.
     Left(Index),
     /// A byte replaced, inserted or removed.
@@ -78,7 +101,7 @@ fn damage() -> impl Strategy<Value = Damage> {
     prop_oneof![
         4 => any::<(Index, Index)>().prop_map(|(at, with)| Damage::Value(at, with)),
         3 => any::<(Index, Index)>().prop_map(|(at, with)| Damage::Moved(at, with)),
-        2 => any::<(Index, Index, Index)>().prop_map(|(at, kind, unit)| Damage::Unit(at, kind, unit)),
+        2 => any::<(Index, Index)>().prop_map(|(at, unit)| Damage::Unit(at, unit)),
         1 => any::<Index>().prop_map(Damage::Left),
         4 => (any::<Index>(), any::<u8>(), 0u8..3).prop_map(|(at, byte, how)| Damage::Byte(at, byte, how)),
         1 => any::<Index>().prop_map(Damage::Cut),
@@ -98,9 +121,9 @@ fn damaged(scene: &str, places: &[Range<usize>], damages: &[Damage]) -> String {
         match damage {
             Damage::Value(at, with) => put(&mut text, at.get(places), with.get::<&str>(&VALUES)),
             Damage::Moved(at, from) => put(&mut text, at.get(places), &scene[from.get(places).clone()]),
-            Damage::Unit(at, kind, unit) => {
+            Damage::Unit(at, unit) => {
                 let place = at.get(places);
-                let name = unit.get(kind.get(&DIMENSIONS).units).name;
+                let name = unit.get(&UNITS);
                 put(&mut text, place, &format!("{name}({})", &scene[place.clone()]));
             }
             Damage::Left(at) => put(&mut text, at.get(places), ""),

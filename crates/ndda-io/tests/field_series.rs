@@ -5,7 +5,7 @@
 use std::path::Path;
 
 use ndda_io::scene::{FieldFormat, Precision};
-use ndda_io::vtu::{Topology, Values, von_mises_pa};
+use ndda_io::vtu::{Topology, Values};
 use ndda_io::{FieldSeries, Frame, OutputFolder};
 use ndda_mesh::{BlockMesh, BlockSet, Mat3, Vec3};
 
@@ -33,15 +33,16 @@ fn a_series_of_frames_is_written() {
         let displacement: Vec<Vec3> = velocity.iter().map(|v| time_s * v).collect();
         let position: Vec<Vec3> =
             blocks.rest_position.iter().zip(&displacement).map(|(x, u)| x + u).collect();
-        let stress_pa: Vec<[f64; 6]> = (0..blocks.tets.len())
-            .map(|tet| [1.0, 2.0, 3.0, 4.0, 5.0, 6.0].map(|s| s * time_s * tet as f64))
-            .collect();
+        let factors = || (0..blocks.tets.len()).map(|tet| time_s * tet as f64);
+        let stress_pa = factors().map(|factor| [1.0, 2.0, 3.0, 4.0, 5.0, 6.0].map(|s| s * factor));
+        // √(½ [1 + 1 + 4] + 3 [16 + 25 + 36])
+        let von_mises_pa = factors().map(|factor| [234f64.sqrt() * factor]);
         let mut frame = Frame::new(&blocks, &position);
         let precision = Precision::F64;
         frame.add_points(Values::vectors("displacement_m", displacement.iter().copied(), precision));
         frame.add_points(Values::vectors("velocity_m_s", velocity.iter().copied(), precision));
-        frame.add_cells(Values::new("von_mises_pa", stress_pa.iter().map(|s| [von_mises_pa(s)]), precision));
-        frame.add_cells(Values::new("stress_pa", stress_pa.iter().copied(), precision));
+        frame.add_cells(Values::new("von_mises_pa", von_mises_pa, precision));
+        frame.add_cells(Values::new("stress_pa", stress_pa, precision));
         series.push(time_s, &frame).unwrap();
     }
     assert_eq!(series.times_s().len(), 4);

@@ -8,8 +8,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use ndda_io::mesh_file::{read, write};
-use ndda_io::vtk_file::write_polyhedra;
+use ndda_io::mesh_file::{read, write, write_polyhedra};
 use ndda_mesh::cut::{Domain, VoronoiOptions, voronoi_blocks};
 use ndda_mesh::generate::{BoxPattern, box_block};
 use ndda_mesh::{BlockMesh, Mat3, Vec3};

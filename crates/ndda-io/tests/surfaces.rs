@@ -3,9 +3,8 @@
 use std::fmt::Write;
 use std::fs;
 
-use ndda_io::mesh_file::{FileProblem, MeshFileError};
+use ndda_io::mesh_file::{FileProblem, MeshFileError, write_polyhedra};
 use ndda_io::surface_file::{Surface, write_blocks};
-use ndda_io::vtk_file::write_polyhedra;
 use ndda_mesh::Vec3;
 use ndda_mesh::cut::{Blocks, CutOptions, Domain, Polyhedron, cut_blocks};
 use proptest::prelude::*;

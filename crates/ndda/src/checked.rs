@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::Path;
 
-use ndda_io::summary::Chosen;
+use ndda_io::read::Chosen;
 use serde::Serialize;
 
 use crate::bodies::Bodies;

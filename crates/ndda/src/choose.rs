@@ -17,9 +17,9 @@
 use std::path::Path;
 
 use ndda_io::diagnostic::{Diagnostic, SceneErrors};
+use ndda_io::read::Chosen;
 use ndda_io::read::{self, LoadedScene};
 use ndda_io::scene::{Contact, FactorRow, Potential, Scene, Stress, is_unset};
-use ndda_io::summary::Chosen;
 use ndda_mesh::geometry::{Aabb, tet_volume, triangle_area_vector};
 use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
 

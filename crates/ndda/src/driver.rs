@@ -8,7 +8,6 @@ use std::sync::Arc;
 
 use ndda_contact::FacetContact;
 use ndda_io::diagnostic::SceneErrors;
-use ndda_io::summary::Label;
 use ndda_io::{checkpoint, read};
 use ndda_solver::{DriveError, RestoreError, Sample, Settled, Simulation, SinkError, Snapshot, StepError};
 
@@ -22,6 +21,7 @@ use crate::judge::verdict;
 use crate::run::contact_rows::{COLUMNS, contact_rows};
 use crate::run::fields::FieldWriter;
 use crate::run::schedule::is_due;
+use crate::summary::Label;
 
 /// Rows of a history that there is room for from the start.
 const ORDINARY_ROWS: u64 = 10_000;

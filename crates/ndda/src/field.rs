@@ -1,7 +1,7 @@
 //! Quantities that blocks can be coloured by: every array of a frame that is a number or a vector, and von Mises stress.
 
+use ndda_fem::stress::von_mises_pa;
 use ndda_io::results::{Array, FieldFrame};
-use ndda_io::vtu::von_mises_pa;
 
 use crate::run::fields::PRESENT;
 use crate::surface::{BLOCK_ID, Surface};

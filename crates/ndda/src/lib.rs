@@ -29,7 +29,8 @@
 //! | [`forecast`] | what is known before the first step: memory, run time, stable time step |
 //! | [`run`] | a run with its history, fields, contacts, checkpoints and log |
 //! | [`driver`] | a simulation that a script or another program steps |
-//! | [`judge`] | closed forms, verdicts, the label `accurate` or `inaccurate`, the summary |
+//! | [`judge`] | closed forms, verdicts, the label `accurate` or `inaccurate` |
+//! | [`summary`] | what a run did, what it cost and whether it can be trusted |
 //! | [`checked`] | what `ndda check` finds in a scene without errors |
 //! | [`explain`] | what a run will do, what it leaves out and why |
 //! | [`study`] | many runs of one scene: error against time |
@@ -88,6 +89,7 @@ pub mod safety;
 pub mod shaking;
 pub mod stereonet;
 pub mod study;
+pub mod summary;
 #[cfg(any(feature = "plots", feature = "report"))]
 mod surface;
 pub mod sweep;

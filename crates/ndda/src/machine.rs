@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use ndda_io::summary::Machine;
+use crate::summary::Machine;
 
 /// Commit that the program was built from.
 pub const COMMIT: &str = env!("NDDA_COMMIT");

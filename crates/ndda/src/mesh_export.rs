@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::str::FromStr;
 
-use ndda_io::{WriteError, mesh_file, surface_file, vtk_file};
+use ndda_io::{WriteError, mesh_file, surface_file};
 
 use crate::build::{CutRock, Meshes};
 
@@ -71,7 +71,7 @@ fn parts(folder: &Path, export: Export, rock: &[CutRock]) -> Result<Vec<String>,
         if is_obj {
             surface_file::write_blocks(&folder.join(&name), blocks)?;
         } else {
-            vtk_file::write_polyhedra(&folder.join(&name), blocks)?;
+            mesh_file::write_polyhedra(&folder.join(&name), blocks)?;
         }
         names.push(name);
     }

@@ -27,7 +27,6 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use ndda_io::summary::{LabelWord, MonitorEnd, Status, Summary};
 use ndda_io::table::Table;
 use ndda_io::{OutputFolder, WriteError, checkpoint};
 use ndda_ranks::{Communicator, agree};
@@ -38,6 +37,7 @@ use crate::judge::reference::Comparison;
 use crate::judge::summary::{Ending, summarise};
 use crate::judge::table;
 use crate::places::name_of;
+use crate::summary::{LabelWord, MonitorEnd, Status, Summary};
 pub use error::RunError;
 pub use identity::Identity;
 use outputs::{Course, Earlier, Outputs};

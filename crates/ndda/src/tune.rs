@@ -6,7 +6,6 @@ pub mod search;
 pub mod settings;
 pub mod space;
 
-use ndda_io::summary::LabelWord;
 use ndda_io::table::Table;
 
 use crate::certify::Trial;
@@ -19,6 +18,7 @@ use crate::study::error::StudyError;
 use crate::study::front::{Point, front};
 use crate::study::launch::Launch;
 use crate::study::record::{Cause, RunOutcome};
+use crate::summary::LabelWord;
 use metric::{Metric, compared, error_of_last};
 use report::{SCHEMA, TrialPoint, Tuned};
 use search::{Best, Search};

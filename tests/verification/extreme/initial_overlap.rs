@@ -1,8 +1,8 @@
 //! Blocks that overlap at the start are refused with the list of pairs; with `settle` they come to rest first.
 
+use ndda::summary::LabelWord;
 use ndda::{Model, Run};
 use ndda_io::code::Code;
-use ndda_io::summary::LabelWord;
 use ndda_solver::Settle;
 
 use super::labelled::scene;

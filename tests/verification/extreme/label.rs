@@ -1,7 +1,7 @@
 //! The label on a second problem: an elastic block that bounces on a held one, over all h = ω_c Δt.
 
 use ndda::judge::verdict;
-use ndda_io::summary::LabelWord;
+use ndda::summary::LabelWord;
 
 use super::labelled::{SPEED, summary_of, word};
 use crate::bouncing_block::{ball, contact_rate, restitution};

@@ -1,7 +1,7 @@
 //! The error of a small block is not hidden by a large one (`small_beside_large.ron`), far away or hit by it.
 
 use ndda::judge::verdict;
-use ndda_io::summary::LabelWord;
+use ndda::summary::LabelWord;
 
 use super::labelled::{SPEED, summary_of, word};
 use crate::evidence::Answer::{AtLeast, AtMost, Within};

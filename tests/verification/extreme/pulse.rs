@@ -1,7 +1,7 @@
 //! Loads and motions that come and go between two steps (`pulse_between_steps.ron`).
 
 use ndda::judge::verdict;
-use ndda_io::summary::LabelWord;
+use ndda::summary::LabelWord;
 use ndda_solver::Simulation;
 
 use super::labelled::{SPEED, summary_of, word};

@@ -1,7 +1,7 @@
 //! A light block between heavy ones that nothing holds sideways (`squeezed_out.ron`).
 
 use ndda::judge::verdict;
-use ndda_io::summary::LabelWord;
+use ndda::summary::LabelWord;
 use ndda_mesh::Vec3;
 use ndda_solver::Simulation;
 

@@ -1,7 +1,7 @@
 //! How far a block turns in a step (`fast_spin.ron`): against ω t about a principal axis, and against Euler's equations.
 
 use ndda::judge::verdict;
-use ndda_io::summary::LabelWord;
+use ndda::summary::LabelWord;
 use ndda_mesh::{Mat3, Vec3};
 use ndda_solver::Simulation;
 

@@ -1,7 +1,7 @@
 //! Vibrations that steps do not resolve (`coarse_vibration.ron`), against that of a mass on springs.
 
 use ndda::judge::verdict;
-use ndda_io::summary::LabelWord;
+use ndda::summary::LabelWord;
 use ndda_solver::Simulation;
 
 use super::labelled::{SPEED, summary_of, word};

@@ -1,7 +1,7 @@
 //! Events for other programs: one JSON object per line on standard output, as docs/reference/json.md says.
 
 use ndda_io::code::Code;
-use ndda_io::diagnostic::{Diagnostic, SceneErrors, Severity, line_column};
+use ndda_io::diagnostic::{Diagnostic, SceneErrors, Severity};
 use serde::Serialize;
 
 use crate::exit;
@@ -118,7 +118,7 @@ impl Events {
 }
 
 fn place<'a>(errors: &SceneErrors, diagnostic: &'a Diagnostic) -> Place<'a> {
-    let at = diagnostic.span.as_ref().map(|span| line_column(&errors.text, span.start));
+    let at = diagnostic.line_column(&errors.text);
     Place {
         severity: match diagnostic.severity {
             Severity::Error => "error",

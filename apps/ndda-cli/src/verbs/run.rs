@@ -5,8 +5,8 @@ use std::time::Instant;
 
 use ndda::judge::table;
 use ndda::run::{Resting, Sensitivity};
+use ndda::summary::{LabelWord, Status, Summary};
 use ndda::{Run, RunError, places};
-use ndda_io::summary::{LabelWord, Status, Summary};
 use ndda_io::{OutputFolder, WriteError};
 use serde::Serialize;
 

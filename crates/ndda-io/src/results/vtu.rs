@@ -172,14 +172,6 @@ impl Frame {
     }
 }
 
-/// The von Mises stress √(½ [(xx − yy)² + (yy − zz)² + (zz − xx)²] + 3 [xy² + yz² + zx²]) \[Pa\].
-pub fn von_mises_pa(stress_pa: &[f64; 6]) -> f64 {
-    let [xx, yy, zz, xy, yz, zx] = *stress_pa;
-    let normal = (xx - yy).powi(2) + (yy - zz).powi(2) + (zz - xx).powi(2);
-    let shear = xy * xy + yz * yz + zx * zx;
-    (0.5 * normal + 3.0 * shear).sqrt()
-}
-
 #[cfg(test)]
 mod tests {
     use ndda_mesh::BlockMesh;
@@ -258,12 +250,5 @@ mod tests {
                 "{error}"
             );
         }
-    }
-
-    #[test]
-    fn von_mises_is_the_axial_stress_in_tension_and_root_three_times_pure_shear() {
-        assert_eq!(von_mises_pa(&[7.0, 0.0, 0.0, 0.0, 0.0, 0.0]), 7.0);
-        assert_eq!(von_mises_pa(&[5.0, 5.0, 5.0, 0.0, 0.0, 0.0]), 0.0);
-        assert!((von_mises_pa(&[0.0, 0.0, 0.0, 0.0, 2.0, 0.0]) - 2.0 * 3f64.sqrt()).abs() < 1e-15);
     }
 }

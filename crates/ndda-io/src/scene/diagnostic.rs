@@ -51,6 +51,11 @@ impl Diagnostic {
         self.help = Some(help.into());
         self
     }
+
+    /// Line and column in its text, both from 1, the column in characters; none without a place.
+    pub fn line_column(&self, text: &str) -> Option<(usize, usize)> {
+        self.span.as_ref().map(|span| line_column(text, span.start))
+    }
 }
 
 /// Messages about one scene file.
@@ -111,10 +116,8 @@ impl SceneErrors {
             Severity::Error => "error",
             Severity::Warning => "warning",
         };
-        let place = diagnostic.span.as_ref().map_or(String::new(), |span| {
-            let (line, column) = line_column(&self.text, span.start);
-            format!(":{line}:{column}")
-        });
+        let place = diagnostic.line_column(&self.text);
+        let place = place.map_or(String::new(), |(line, column)| format!(":{line}:{column}"));
         let path = if diagnostic.path.is_empty() { String::new() } else { format!(": {}", diagnostic.path) };
         format!("{}{place}: {word}[{}]{path}", self.file, diagnostic.code)
     }
@@ -129,7 +132,7 @@ impl fmt::Display for SceneErrors {
 impl std::error::Error for SceneErrors {}
 
 /// Line and column of a byte, both from 1, the column in characters.
-pub fn line_column(text: &str, offset: usize) -> (usize, usize) {
+pub(crate) fn line_column(text: &str, offset: usize) -> (usize, usize) {
     let before = text.char_indices().take_while(|(i, _)| *i < offset).map(|(_, c)| c);
     before.fold((1, 1), |(line, column), c| if c == '\n' { (line + 1, 1) } else { (line, column + 1) })
 }

@@ -1,25 +1,45 @@
 //! `--set @FILE`: overrides in a file, one a line, where they are too many for a command line.
 
 use std::borrow::Cow;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use crate::limited;
 use crate::scene::code::Code;
 use crate::scene::diagnostic::Diagnostic;
+use crate::{WriteError, atomic, limited};
 
 /// What the name of a file begins with, and no path in a scene.
 const FILE: char = '@';
 /// What a line begins with that is a comment.
 const COMMENT: &str = "//";
 
+/// Writes overrides to files, the first to `file(1)`, and returns the words that stand for all of them behind `--set`: the names of these
+/// files, and overrides that are no line of a file as they are. Later values win, so that the order is kept.
+///
+/// # Errors
+/// [`WriteError`] when a file cannot be written.
+pub fn write(overrides: &[String], file: impl Fn(usize) -> PathBuf) -> Result<Vec<String>, WriteError> {
+    let mut words = Vec::new();
+    for some in overrides.chunk_by(|a, b| fits_a_line(a) && fits_a_line(b)) {
+        let file = file(words.len() + 1);
+        match word_for(&file).filter(|_| fits_a_line(&some[0])) {
+            Some(word) => {
+                atomic::write(&file, (some.join("\n") + "\n").as_bytes())?;
+                words.push(word);
+            }
+            None => words.extend_from_slice(some),
+        }
+    }
+    Ok(words)
+}
+
 /// Whether an override can be a line of a file as it is.
-pub fn fits_a_line(one: &str) -> bool {
+fn fits_a_line(one: &str) -> bool {
     let line = one.trim();
     !line.is_empty() && line == one && !one.contains(['\n', '\r']) && !line.starts_with([FILE, '/'])
 }
 
 /// The word for `--set` that stands for the overrides in a file.
-pub fn word_for(file: &Path) -> Option<String> {
+fn word_for(file: &Path) -> Option<String> {
     file.to_str().map(|name| format!("{FILE}{name}"))
 }
 

@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use crate::scene::check;
+pub use crate::scene::chosen::Chosen;
 use crate::scene::code::Code;
 use crate::scene::diagnostic::{Diagnostic, SceneErrors, Severity};
 use crate::scene::include;
@@ -16,7 +17,6 @@ pub use crate::scene::parse::{is_standard_input, text_of};
 use crate::scene::renamed;
 pub use crate::scene::suggest::{nearest, suggest};
 use crate::scene::{Contact, Scene, is_unset};
-use crate::summary::Chosen;
 
 /// A scene that parsed and passed its checks.
 #[derive(Clone, Debug)]

@@ -15,8 +15,7 @@ use crate::scene::locate::Node;
 use crate::scene::parameters::{self, Parameters, number};
 use crate::scene::suggest::nearest;
 
-pub use dimensions::DIMENSIONS;
-pub(crate) use dimensions::{Dimension, Unit, dimension_of};
+pub(crate) use dimensions::{DIMENSIONS, Dimension, Unit, dimension_of};
 pub(crate) use symbols::{NOT_BEHIND, advice, may_be_unit};
 
 /// A choice whose value is a place [m], though its name does not end in it.

@@ -2,13 +2,12 @@
 
 use std::fmt::Write as _;
 
-use ndda_io::summary::LabelWord;
-
 use super::certificate::{Certificate, Certified};
 use super::extrapolate::Behaviour;
 use super::quantities::{BLOCK, named};
 use crate::columns::columns;
 use crate::numbers::counted;
+use crate::summary::LabelWord;
 
 /// Blocks that are shown, those of the largest relative errors, unless others are asked for.
 const MOST_BLOCKS: usize = 3;

@@ -1,7 +1,6 @@
 //! Makes the runs of a certificate, those only that are needed, and puts the certificate together.
 
 use ndda_io::scene::Step;
-use ndda_io::summary::{LabelWord, Summary};
 use ndda_io::table::Table;
 
 use super::certificate::{self, Basis, Certificate, Certified, ClosedForm, Histories, RunRecord, SCHEMA};
@@ -16,6 +15,7 @@ use crate::study::case::Case;
 use crate::study::error::StudyError;
 use crate::study::launch::Launch;
 use crate::study::record::{RESULTS, RunOutcome, folder};
+use crate::summary::{LabelWord, Summary};
 
 /// Steps that may stop before three are found that do not.
 const MOST_STOPPED: u32 = 2;

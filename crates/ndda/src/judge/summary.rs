@@ -1,11 +1,8 @@
 //! The summary of a run.
 
 use ndda_fem::stress::volume_m3;
+use ndda_io::read::Chosen;
 use ndda_io::scene::{Integrator, Scene};
-use ndda_io::summary::{
-    BlockEnd, BoltEnd, Chosen, Counts, Invariants, Judgement, LabelWord, MonitorEnd, Named, ReferenceError,
-    Status, Summary, Verdict,
-};
 use ndda_mesh::Vec3;
 use ndda_solver::{BoltStatus, Simulation, StepCounts};
 
@@ -15,6 +12,10 @@ use crate::judge::verdict;
 use crate::lean;
 use crate::machine;
 use crate::run::recorder::Recorder;
+use crate::summary::{
+    BlockEnd, BoltEnd, Counts, Invariants, Judgement, LabelWord, MonitorEnd, Named, ReferenceError, Status,
+    Summary, Verdict,
+};
 use crate::waves::Finding;
 
 /// Input of the summary besides the simulation.

@@ -1,12 +1,12 @@
 //! The end of a run: a few lines for a person, and tables of everything.
 
-use ndda_io::summary::{BoltEnd, Course, Judgement, LabelWord, Motion, StageEnd, Summary, Verdict};
 use ndda_solver::shown_time_s;
 
 use super::reasons;
 use super::words::{SECOND_RUN, in_words};
 use crate::columns::columns;
 use crate::numbers::{SHORTEST_M, counted, length};
+use crate::summary::{BoltEnd, Course, Judgement, LabelWord, Motion, StageEnd, Summary, Verdict};
 
 /// Most blocks in a table.
 const MOST_BLOCKS: usize = 1000;

@@ -1,6 +1,5 @@
 //! The verdict: a run's checks against their limits, and whether its motion is to be trusted.
 
-use ndda_io::summary::{Judgement, Label, LabelWord, Named, Verdict};
 use ndda_solver::{Simulation, Worst};
 
 mod vibration;
@@ -9,6 +8,8 @@ use vibration::{
     SETTLE, arriving_waves, chatter, contact_damping, creep, energy_from_damping, hops, rebound, ringing,
     within_a_step,
 };
+
+use crate::summary::{Judgement, Label, LabelWord, Named, Verdict};
 
 /// Energy gained or lost for good over the largest energy. Speeds are as its root: twice the 1 % that they may be off.
 const MOST_ENERGY: f64 = 0.02;

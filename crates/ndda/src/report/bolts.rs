@@ -4,11 +4,11 @@ use maud::{Markup, html};
 use ndda_io::BoltLine;
 use ndda_io::mesh_file::MeshFileError;
 use ndda_io::results::ListedFrame;
-use ndda_io::summary::{BoltEnd, Summary};
 use ndda_mesh::Vec3;
 use serde::Serialize;
 
 use super::sections::brief;
+use crate::summary::{BoltEnd, Summary};
 use crate::surface::Surface;
 use crate::view3d::bolts;
 

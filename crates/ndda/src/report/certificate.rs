@@ -1,10 +1,10 @@
 //! The certificate of a run on its page: what its answers may be wrong by.
 
 use maud::{Markup, html};
-use ndda_io::summary::Summary;
 
 use crate::certify::certificate::Certificate;
 use crate::certify::report::{shown, with_error};
+use crate::summary::Summary;
 
 /// Each quantity with its error bar; nothing where the run has no certificate.
 pub fn certificate(certificate: Option<&Certificate>, summary: &Summary) -> Markup {

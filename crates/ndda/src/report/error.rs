@@ -4,9 +4,10 @@ use std::path::PathBuf;
 
 use ndda_io::WriteError;
 use ndda_io::mesh_file::MeshFileError;
-use ndda_io::results::ResultsError;
+use ndda_io::table::TableError;
 
 use crate::frames::OtherBlocks;
+use crate::summary::SummaryError;
 
 /// Why a report cannot be written.
 #[derive(Debug, thiserror::Error)]
@@ -28,9 +29,12 @@ pub enum ReportError {
     /// There is nothing to show.
     #[error("there are no frames to show: keep one first")]
     NoFrames,
-    /// A file of the run cannot be used.
+    /// The summary cannot be used.
     #[error(transparent)]
-    Results(#[from] ResultsError),
+    Summary(#[from] SummaryError),
+    /// A row of the history, or of what bolts carry, is not numbers, one per column.
+    #[error("{0}; the history is damaged: run the scene again")]
+    History(#[from] TableError),
     /// A frame cannot be used.
     #[error(transparent)]
     Frame(#[from] MeshFileError),

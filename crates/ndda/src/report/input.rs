@@ -3,13 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use ndda_io::OutputFolder;
-use ndda_io::results::{BoltForces, ListedFrame, ResultsError, Table};
-use ndda_io::summary::Summary;
+use ndda_io::results::{BoltForces, ListedFrame, Table};
 
 use super::error::ReportError;
 use crate::certify::certificate::Certificate;
 use crate::places;
 use crate::study::record;
+use crate::summary::Summary;
 use crate::view3d::bolts;
 
 /// Results of a run, but for the frames themselves.
@@ -70,7 +70,7 @@ impl Input {
         let index = folder.join(OutputFolder::FIELDS_INDEX);
         Ok(Self {
             summary: Summary::read(&folder.join(OutputFolder::SUMMARY))?,
-            history: Table::read(&history).map_err(ResultsError::from)?,
+            history: Table::read(&history)?,
             frames: if index.is_file() { ListedFrame::read_all(&index)? } else { Vec::new() },
             bolt_frames: bolts::listed(folder)?,
             bolt_forces: if has(OutputFolder::BOLTS) {

@@ -1,7 +1,6 @@
 //! The page: its skeleton, and the scripts and numbers in it. `maud` escapes every text that comes from a scene.
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
-use ndda_io::summary::{StageEnd, Summary};
 use serde::Serialize;
 
 use super::bolts;
@@ -10,6 +9,7 @@ use super::charts::Charts;
 use super::input::Input;
 use super::motion::Motion;
 use super::sections;
+use crate::summary::{StageEnd, Summary};
 
 const STYLES: [&str; 2] =
     [include_str!("../../assets/vendor/uplot.min.css"), include_str!("../../assets/report/report.css")];

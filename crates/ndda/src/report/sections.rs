@@ -1,12 +1,12 @@
 //! The parts of the page that are text: what was run, what became of it, what it cost.
 
 use maud::{Markup, html};
-use ndda_io::summary::{BlockEnd, Judgement, LabelWord, StageEnd, Status, Summary, Verdict};
 
 use crate::frames::STILL;
 use crate::judge::table;
 use crate::judge::words::in_words;
 use crate::numbers::{counted, length};
+use crate::summary::{BlockEnd, Judgement, LabelWord, StageEnd, Status, Summary, Verdict};
 
 /// Blocks that are listed beside the picture.
 const MOST_FARTHEST: usize = 8;

@@ -3,8 +3,9 @@
 use std::ops::ControlFlow;
 use std::time::Instant;
 
+use ndda_fem::stress::von_mises_pa;
 use ndda_io::scene::{Field, Precision, Scene};
-use ndda_io::vtu::{Topology, Values, von_mises_pa};
+use ndda_io::vtu::{Topology, Values};
 use ndda_io::{FieldSeries, Frame, OutputFolder, WriteError};
 use ndda_mesh::geometry::triangle_area_vector;
 use ndda_mesh::{BlockSet, Vec3};

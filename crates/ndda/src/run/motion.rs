@@ -4,13 +4,13 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use ndda_fem::BlockOperator;
-use ndda_io::summary::{BlockMotion, Course, Motion};
 use ndda_io::{History, OutputFolder, WriteError};
 use ndda_mesh::{BlockId, Mat3, Vec3};
 use ndda_solver::{BodyKind, Simulation, Sink, SinkError, View};
 use serde::{Deserialize, Serialize};
 
 use super::schedule::Schedule;
+use crate::summary::{BlockMotion, Course, Motion};
 
 /// A block has moved if a point of it has gone farther than this part of the distance from its mass centre to its farthest node.
 pub(crate) const MOVED: f64 = 0.01;
@@ -265,8 +265,8 @@ fn row(simulation: &Simulation, block: BlockId) -> [f64; COLUMNS.len()] {
 
 #[cfg(test)]
 mod tests {
+    use crate::summary::Course;
     use crate::{Model, Run};
-    use ndda_io::summary::Course;
 
     #[test]
     fn a_block_at_the_top_of_its_flight_is_not_at_rest() {

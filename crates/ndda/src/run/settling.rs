@@ -5,7 +5,6 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
-use ndda_io::summary::{Invariants, Label, LabelWord, Named, Summary};
 use ndda_io::{WriteError, checkpoint};
 use ndda_ranks::Alone;
 use ndda_solver::{Settled, Settling, StepError, StepReport};
@@ -14,6 +13,7 @@ use super::outputs::{Course, Earlier, Outputs, SavedRun};
 use super::rest::{Resting, Watch};
 use super::{Recording, Run, RunError, error, unless_ended, write_results};
 use crate::judge::summary::{Ending, summarise};
+use crate::summary::{Invariants, Label, LabelWord, Named, Summary};
 
 /// A scene that was on its way to rest when its run was interrupted.
 pub(super) struct OnTheWay {

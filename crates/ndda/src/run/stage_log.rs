@@ -1,7 +1,6 @@
 //! Where a run is in its stages, how those before ended, and at which steps they end.
 
 use ndda_io::scene::{Scene, Support, matches};
-use ndda_io::summary::StageEnd;
 use ndda_mesh::BlockId;
 use ndda_solver::{Simulation, View};
 use serde::{Deserialize, Serialize};
@@ -9,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::recorder::Recorder;
 use crate::build;
 use crate::judge::verdict;
+use crate::summary::StageEnd;
 
 /// Where a run is in its stages; a checkpoint keeps it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

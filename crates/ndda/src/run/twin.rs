@@ -8,7 +8,6 @@ use std::str::FromStr;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use ndda_io::summary::{Label, LabelWord, Status, Summary};
 use ndda_mesh::geometry::tet_heights;
 use ndda_mesh::{BlockId, TetId, Vec3};
 use ndda_solver::{BodyKind, Settle, Simulation, StartSnapshot, StepError};
@@ -16,6 +15,7 @@ use ndda_solver::{BodyKind, Settle, Simulation, StartSnapshot, StepError};
 use super::unless_ended;
 use crate::judge::words::SECOND_RUN;
 use crate::numbers::{counted, length};
+use crate::summary::{Label, LabelWord, Status, Summary};
 
 /// Whether a twin of the run is run after it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

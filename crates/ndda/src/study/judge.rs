@@ -2,7 +2,6 @@
 
 use ndda_io::read::LoadedScene;
 use ndda_io::study::Reference;
-use ndda_io::summary::Named;
 use ndda_io::table::Table;
 use serde_json::Value;
 
@@ -12,6 +11,7 @@ use super::error::StudyError;
 use super::launch::{Launch, clocked, least};
 use super::record::{RESULTS, Record, RunOutcome, folder};
 use super::result::{CasePoint, Compared, Figures, Run};
+use crate::summary::Named;
 
 /// Reference runs must agree this many times better than the smallest error that is distinguished from zero.
 const AGREE: f64 = 5.0;

@@ -1,11 +1,11 @@
 //! The results of a study: a point per case, its errors and figures, and the fronts.
 
-use ndda_io::summary::{Invariants, Label, Named, ReferenceError};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use super::case::Case;
 use super::front::Point;
+use crate::summary::{Invariants, Label, Named, ReferenceError};
 
 /// Everything that a study has found.
 pub struct Results {

@@ -5,12 +5,12 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use ndda_io::scene::override_files;
-use ndda_io::summary::Status;
-use ndda_io::{OutputFolder, WriteError, atomic};
+use ndda_io::{OutputFolder, WriteError};
 
 use super::error::StudyError;
 use super::record::Cause;
 use crate::run::Sensitivity;
+use crate::summary::Status;
 use crate::{Model, Run};
 
 /// A run of a case.
@@ -38,20 +38,9 @@ impl CaseRun<'_> {
         if self.overrides.iter().map(String::len).sum::<usize>() <= MOST_BYTES {
             return Ok(self.overrides.to_vec());
         }
-        let mut words = Vec::new();
-        // Later values win, so that their order counts.
-        for some in self.overrides.chunk_by(|a, b| [a, b].iter().all(|one| override_files::fits_a_line(one)))
-        {
-            let file = self.out.with_file_name(format!("values_{}.txt", words.len() + 1));
-            match override_files::word_for(&file).filter(|_| override_files::fits_a_line(&some[0])) {
-                Some(word) => {
-                    atomic::write(&file, (some.join("\n") + "\n").as_bytes())?;
-                    words.push(word);
-                }
-                None => words.extend_from_slice(some),
-            }
-        }
-        Ok(words)
+        override_files::write(self.overrides, |number| {
+            self.out.with_file_name(format!("values_{number}.txt"))
+        })
     }
 }
 

@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use ndda_io::results::Table;
-use ndda_io::summary::Summary;
 use ndda_io::{OutputFolder, read};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -13,6 +12,7 @@ use crate::certify::quantities::{BLOCK, TIME};
 use crate::run::recorder::{self, Extras};
 use crate::safety::Bracket;
 use crate::study::error::StudyError;
+use crate::summary::Summary;
 
 /// Name of the label.
 pub const LABEL: &str = "label";

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
+use ndda_io::OutputFolder;
 use ndda_io::results::{FieldFrame, ListedFrame};
-use ndda_io::{OutputFolder, Summary};
 use ndda_mesh::Vec3;
 use ndda_mesh::geometry::Aabb;
 
@@ -14,6 +14,7 @@ use super::error::ViewError;
 use super::film::{Colouring, Film, Moment, moved, moving, range};
 use crate::field::{Field, Place, fields};
 use crate::frames::{OtherBlocks, same_blocks, thinned};
+use crate::summary::Summary;
 use crate::surface::Surface;
 
 /// Folder of the failing run in the output folder of `ndda safety`.

@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use crate::results::read::ResultsError;
 use crate::results::table::TableError;
 
 /// The largest tensions of bolts, frame by frame.
@@ -18,9 +17,9 @@ impl BoltForces {
     /// Reads `bolts.csv`.
     ///
     /// # Errors
-    /// [`ResultsError`] when it cannot be read, lacks a column, or has a cell that is no number.
-    pub fn read(path: &Path) -> Result<Self, ResultsError> {
-        read(path).map_err(|reason| TableError::Unreadable { file: path.to_path_buf(), reason }.into())
+    /// [`TableError`] when it cannot be read, lacks a column, or has a cell that is no number.
+    pub fn read(path: &Path) -> Result<Self, TableError> {
+        read(path).map_err(|reason| TableError::Unreadable { file: path.to_path_buf(), reason })
     }
 }
 

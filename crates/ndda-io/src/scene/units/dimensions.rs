@@ -2,7 +2,7 @@
 
 /// A unit that a value may be written in: one of it is `factor` · 10^`decimals` of the field's own.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Unit {
+pub(crate) struct Unit {
     /// Its name.
     pub name: &'static str,
     decimals: i32,
@@ -11,7 +11,7 @@ pub struct Unit {
 
 /// A kind of quantity, known by the end of a field's name.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Dimension {
+pub(crate) struct Dimension {
     /// End of the field's name.
     pub suffix: &'static str,
     /// Name of the unit.
@@ -35,7 +35,7 @@ const fn dimension(suffix: &'static str, name: &'static str, units: &'static [Un
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
 /// Dimensions; an end that is part of another comes after it.
-pub const DIMENSIONS: [Dimension; 16] = [
+pub(crate) const DIMENSIONS: [Dimension; 16] = [
     dimension(
         "_kg_m3",
         "a density",
