@@ -32,7 +32,7 @@ use crate::write_error::WriteError;
 use error::{Fault, ending};
 use gmsh_program::Sizes;
 
-pub use error::{FileProblem, MeshFileError};
+pub use error::{FileProblem, MeshFileError, Place};
 pub use vtk_file::write_polyhedra;
 
 /// Endings that [`read`] knows, for messages.
@@ -55,7 +55,7 @@ pub struct MeshFile {
 /// not tetrahedra of first order.
 pub fn read(path: &Path) -> Result<MeshFile, MeshFileError> {
     match ending(path).as_str() {
-        "msh" => Ok(msh::read(path)?),
+        "msh" => msh::read(path),
         "node" | "ele" | "face" => tetgen::read(path),
         "inp" => abaqus::read(path),
         "vtu" | "vtk" => vtk_file::read(path),

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::sync::LazyLock;
 
-use ndda_io::mesh_file::{FileProblem, MeshFileError, read, write};
+use ndda_io::mesh_file::{FileProblem, MeshFileError, Place, read, write};
 use ndda_mesh::generate::{BoxPattern, box_block};
 use ndda_mesh::{BlockMesh, Mat3, Vec3};
 use proptest::prelude::*;
@@ -23,10 +23,12 @@ fn two_boxes() -> Vec<(String, BlockMesh)> {
 
 /// The problem of the file, and its line.
 fn fault(path: &Path) -> (Option<usize>, FileProblem) {
-    match read(path).unwrap_err() {
-        MeshFileError::File { line, problem, .. } => (line, problem),
-        MeshFileError::Msh(error) => panic!("{error}"),
-    }
+    let MeshFileError { place, problem, .. } = read(path).unwrap_err();
+    let line = place.map(|place| match place {
+        Place::Line(line) => line,
+        Place::Byte(byte) => panic!("byte {byte} of a text"),
+    });
+    (line, problem)
 }
 
 /// The problem of an Abaqus file with that text.

@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use ndda_io::msh::{MshError, MshFile, MshProblem, Place, parse, read};
+use ndda_io::mesh_file::{FileProblem, MeshFile, MeshFileError, Place, read};
+use ndda_io::msh::{MshProblem, parse};
 use ndda_mesh::stats::stats;
 use ndda_mesh::{BlockMesh, Vec3, validate};
 use proptest::prelude::*;
@@ -21,12 +22,12 @@ fn text(name: &str) -> String {
     String::from_utf8(bytes(name)).unwrap()
 }
 
-fn parsed(bytes: &[u8]) -> Result<MshFile, MshError> {
+fn parsed(bytes: &[u8]) -> Result<MeshFile, MeshFileError> {
     parse(Path::new("a.msh"), bytes)
 }
 
 /// The problem of `text`, and its line.
-fn fault(text: &str) -> (Option<usize>, MshProblem) {
+fn fault(text: &str) -> (Option<usize>, FileProblem) {
     let error = parsed(text.as_bytes()).unwrap_err();
     let line = error.place.map(|place| match place {
         Place::Line(line) => line,
@@ -118,7 +119,7 @@ fn parametric_coordinates_are_skipped_in_4_1_and_refused_in_2_2() {
             assert_eq!(result, read(&data("one_box_v4_ascii")), "{form}");
         } else {
             let problem = result.unwrap_err().problem;
-            assert!(matches!(problem, MshProblem::Section { section: "$ParametricNodes", .. }), "{form}");
+            assert!(matches!(problem, FileProblem::NotRead { .. }), "{form}");
         }
     }
 }
@@ -131,7 +132,7 @@ fn meshes_that_are_not_first_order_tetrahedra_are_refused_by_type() {
         let order_2 = refused("one_box_order_2");
         assert!(order_2.contains("× 10-node tetrahedron") && order_2.contains("-order 1"), "{order_2}");
         let surface = read(&data(&format!("one_box_surface_{form}"))).unwrap_err().problem;
-        assert_eq!(surface, MshProblem::OnlySurface { triangles: 24 }, "{form}");
+        assert_eq!(surface, FileProblem::Msh(MshProblem::OnlySurface { triangles: 24 }), "{form}");
     }
 }
 
@@ -139,7 +140,9 @@ fn meshes_that_are_not_first_order_tetrahedra_are_refused_by_type() {
 fn a_tetrahedron_in_two_bodies_is_refused() {
     for form in FORMS {
         let problem = read(&data(&format!("overlapping_{form}"))).unwrap_err().problem;
-        let MshProblem::InTwoBodies { count, a, b, .. } = problem else { panic!("{form}: {problem}") };
+        let FileProblem::Msh(MshProblem::InTwoBodies { count, a, b, .. }) = problem else {
+            panic!("{form}: {problem}")
+        };
         assert_eq!((count, a.as_str(), b.as_str()), (48, "volume_1", "all"), "{form}");
     }
 }
@@ -147,7 +150,10 @@ fn a_tetrahedron_in_two_bodies_is_refused() {
 #[test]
 fn tetrahedra_outside_of_all_bodies_are_counted() {
     let outside = text("hand_v2").replace("4 4 2 5 1", "4 4 2 0 1");
-    assert_eq!(fault(&outside), (Some(25), MshProblem::Unassigned { count: 1, tets: 2, first: 4 }));
+    assert_eq!(
+        fault(&outside),
+        (Some(25), FileProblem::Msh(MshProblem::Unassigned { count: 1, tets: 2, first: 4 }))
+    );
 }
 
 /// A binary file with one tetrahedron, highest byte first.
@@ -208,41 +214,50 @@ fn counts_are_held_against_the_length_of_the_file() {
         (v4.replace("3 1 4 2", &format!("3 1 4 {}", u64::MAX)), 34),
     ] {
         let (found_line, problem) = fault(&text);
-        assert!(matches!(problem, MshProblem::TooShort { .. }), "{problem}");
+        assert!(matches!(problem, FileProblem::Msh(MshProblem::TooShort { .. })), "{problem}");
         assert_eq!(found_line, Some(line), "{problem}");
     }
     let mut binary = bytes("two_boxes_v4_binary");
     let nodes = binary.windows(7).position(|w| w == b"$Nodes\n").unwrap() + 7;
     binary[nodes + 8..nodes + 16].copy_from_slice(&1_000_000_000_000u64.to_le_bytes());
     let error = parsed(&binary).unwrap_err();
-    assert!(matches!(error.problem, MshProblem::TooShort { count: 1_000_000_000_000, .. }), "{error}");
+    assert!(
+        matches!(error.problem, FileProblem::Msh(MshProblem::TooShort { count: 1_000_000_000_000, .. })),
+        "{error}"
+    );
 }
 
 #[test]
 fn damaged_text_is_refused_with_its_line() {
     let v2 = text("hand_v2");
     let v4 = text("hand_v4");
-    let unexpected = |problem: &MshProblem| matches!(problem, MshProblem::Unexpected { .. });
+    let unexpected = |problem: &FileProblem| matches!(problem, FileProblem::Unexpected { .. });
     let (line, problem) = fault(&v2.replace("10 1 0 0", "10 1 zero 0"));
     assert_eq!((line, unexpected(&problem)), (Some(14), true));
     assert_eq!(problem.to_string(), "expected a coordinate, found `zero`");
     let (line, problem) = fault(&v2.replace("10 1 0 0", "10 1 nan 0"));
     assert_eq!((line, unexpected(&problem)), (Some(14), true));
     let (line, problem) = fault(&v2.replace("10 1 0 0", "7 1 0 0"));
-    assert_eq!((line, problem), (Some(17), MshProblem::NodeTwice(7)));
+    assert_eq!((line, problem), (Some(17), FileProblem::Twice { what: "node", id: 7 }));
     let (line, problem) = fault(&v2.replace("7 10 20 30", "7 10 21 30"));
-    assert_eq!((line, problem), (Some(24), MshProblem::NoSuchNode { element: 3, node: 21 }));
+    assert_eq!(
+        (line, problem),
+        (Some(24), FileProblem::Msh(MshProblem::NoSuchNode { element: 3, node: 21 }))
+    );
     let (line, problem) = fault(&v2.replace("4 4 2 5", "4 94 2 5"));
-    assert_eq!((line, problem), (Some(25), MshProblem::ElementType(94)));
+    assert_eq!((line, problem), (Some(25), FileProblem::Msh(MshProblem::ElementType(94))));
     let (line, problem) = fault(&v2.replace("$Elements\n4", "$Elements\n3"));
     assert_eq!((line, unexpected(&problem)), (Some(25), true));
     let (line, problem) = fault(&v4.replace("2 6 7 50", "2 5 7 50"));
-    assert_eq!((line, problem), (Some(28), MshProblem::Sum { what: "nodes", promised: 5, held: 6 }));
+    assert_eq!(
+        (line, problem),
+        (Some(28), FileProblem::Msh(MshProblem::Sum { what: "nodes", promised: 5, held: 6 }))
+    );
     let (line, problem) = fault(&v2.replace("\"base\"", "base"));
     assert_eq!((line, unexpected(&problem)), (Some(9), true));
     let names = "$PhysicalNames\n2\n2 4 \"base\"\n0 1 \"base\"";
     let twice = v2.replace("$PhysicalNames\n1\n2 4 \"base\"", names).replace("15 2 0 1 50", "15 2 1 1 7");
-    assert_eq!(fault(&twice), (None, MshProblem::SameName("base".into())));
+    assert_eq!(fault(&twice), (None, FileProblem::Msh(MshProblem::SameName("base".into()))));
 }
 
 #[test]
@@ -250,27 +265,29 @@ fn other_versions_and_other_files_are_refused() {
     let v2 = text("hand_v2");
     for version in ["1", "2", "2.1", "4", "4.0", "5.0", "x"] {
         let (line, problem) = fault(&v2.replace("2.2 0 8", &format!("{version} 0 8")));
-        assert_eq!((line, problem), (Some(5), MshProblem::Version(version.into())));
+        assert_eq!((line, problem), (Some(5), FileProblem::Msh(MshProblem::Version(version.into()))));
     }
-    assert_eq!(fault("$NOD\n1\n"), (Some(1), MshProblem::Version("1".into())));
-    assert_eq!(fault(&v2.replace("2.2 0 8", "2.2 2 8")).1, MshProblem::FileType(2));
-    assert_eq!(fault(&v2.replace("2.2 0 8", "2.2 0 4")).1, MshProblem::DataSize(4));
-    assert!(matches!(fault("solid cube\n").1, MshProblem::NotMsh(_)));
-    assert!(matches!(fault("$Nodes\n").1, MshProblem::NotMsh(_)));
-    assert_eq!(fault("").1, MshProblem::Empty);
-    assert_eq!(fault(" \n").1, MshProblem::Empty);
-    assert_eq!(fault("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n").1, MshProblem::NoTetrahedra);
+    assert_eq!(fault("$NOD\n1\n"), (Some(1), FileProblem::Msh(MshProblem::Version("1".into()))));
+    assert_eq!(fault(&v2.replace("2.2 0 8", "2.2 2 8")).1, FileProblem::Msh(MshProblem::FileType(2)));
+    assert_eq!(fault(&v2.replace("2.2 0 8", "2.2 0 4")).1, FileProblem::Msh(MshProblem::DataSize(4)));
+    assert!(matches!(fault("solid cube\n").1, FileProblem::Msh(MshProblem::NotMsh(_))));
+    assert!(matches!(fault("$Nodes\n").1, FileProblem::Msh(MshProblem::NotMsh(_))));
+    assert_eq!(fault("").1, FileProblem::Msh(MshProblem::Empty));
+    assert_eq!(fault(" \n").1, FileProblem::Msh(MshProblem::Empty));
+    assert_eq!(fault("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n").1, FileProblem::Msh(MshProblem::NoTetrahedra));
     let partitioned = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PartitionedEntities\n";
-    assert!(matches!(fault(partitioned).1, MshProblem::Section { .. }));
+    assert!(matches!(fault(partitioned).1, FileProblem::NotRead { .. }));
 }
 
 #[test]
 fn missing_files_and_folders_are_refused() {
     let missing = read(&data("missing")).unwrap_err();
-    assert!(matches!(missing.problem, MshProblem::Unreadable(_)));
+    assert!(matches!(missing.problem, FileProblem::Unreadable(_)));
     assert!(missing.to_string().contains("missing.msh: cannot be read"), "{missing}");
     let folder = tempfile::tempdir().unwrap();
-    assert_eq!(read(folder.path()).unwrap_err().problem, MshProblem::NotAFile);
+    let named_as_a_file = folder.path().join("a.msh");
+    std::fs::create_dir(&named_as_a_file).unwrap();
+    assert_eq!(read(&named_as_a_file).unwrap_err().problem, FileProblem::NotAFile);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::fs;
 
-use ndda_io::mesh_file::{FileProblem, MeshFileError, write_polyhedra};
+use ndda_io::mesh_file::{FileProblem, MeshFileError, Place, write_polyhedra};
 use ndda_io::surface_file::{Surface, write_blocks};
 use ndda_mesh::Vec3;
 use ndda_mesh::cut::{Blocks, CutOptions, Domain, Polyhedron, cut_blocks};
@@ -82,7 +82,7 @@ fn obj_and_vtk_surfaces_are_read_and_turned_outward() {
 fn nearly_equal_vertices_are_one_at_a_tolerance_only() {
     let mut cracked = triangles();
     cracked[0][1] += Vec3::new(1e-7, 0.0, 0.0);
-    assert!(matches!(from("stl", stl_text(&cracked), 0.0), Err(MeshFileError::File { .. })));
+    assert!(matches!(from("stl", stl_text(&cracked), 0.0).unwrap_err().problem, FileProblem::Open { .. }));
     assert_eq!(from("stl", stl_text(&cracked), 1e-6).unwrap().vertices.len(), 8);
     cracked.push([Vec3::zeros(), Vec3::zeros(), Vec3::x()]);
     assert_eq!(from("stl", stl_text(&cracked), 1e-6).unwrap().faces.len(), 12);
@@ -91,18 +91,16 @@ fn nearly_equal_vertices_are_one_at_a_tolerance_only() {
 #[test]
 fn open_edges_are_named_by_their_ends() {
     let error = from("stl", stl_text(&triangles()[1..]), 0.0).unwrap_err();
-    let MeshFileError::File { problem: FileProblem::Open { count, edges }, .. } = &error else {
-        panic!("{error}")
-    };
+    let FileProblem::Open { count, edges } = &error.problem else { panic!("{error}") };
     assert_eq!((*count, edges.matches('–').count()), (3, 3));
     assert!(edges.contains("(0, 0, 0)–(0, 0, 3)"), "{edges}");
 }
 
 #[test]
 fn damaged_surfaces_are_refused_with_their_line() {
-    let line = |ending: &str, content: String| match from(ending, content, 0.0).unwrap_err() {
-        MeshFileError::File { line, .. } => line,
-        error => panic!("{error}"),
+    let line = |ending: &str, content: String| match from(ending, content, 0.0).unwrap_err().place? {
+        Place::Line(line) => Some(line),
+        Place::Byte(byte) => panic!("byte {byte} of a text"),
     };
     assert_eq!(line("obj", OBJ.replace("f 1 2 4", "f 1 2 9")), Some(9));
     assert_eq!(line("obj", OBJ.replace("v 0 1 0", "v 0 inf 0")), Some(4));

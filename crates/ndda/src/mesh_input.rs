@@ -53,10 +53,10 @@ pub fn read(path: &Path, repairs: &[Repair]) -> Result<(Meshes, Vec<String>), St
 
 /// The words of an error, with what else can be measured where the ending of a file is unknown.
 fn with_surfaces(error: &MeshFileError) -> String {
-    match error {
-        MeshFileError::File { problem: FileProblem::Extension { .. }, .. } => {
+    match error.problem {
+        FileProblem::Extension { .. } => {
             format!("{error}; a closed surface, .stl, .obj or .vtp; or a scene, .ron")
         }
-        other => other.to_string(),
+        _ => error.to_string(),
     }
 }

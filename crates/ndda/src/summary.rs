@@ -4,13 +4,13 @@ mod bolt;
 mod label;
 mod motion;
 mod named;
+mod read;
 mod reference_error;
 mod stage;
 mod verdict;
 
-use std::fs;
 use std::io::{self, BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use ndda_io::read::Chosen;
 use ndda_io::{WriteError, atomic};
@@ -21,6 +21,7 @@ pub use bolt::BoltEnd;
 pub use label::{Label, LabelWord};
 pub use motion::{BlockEnd, BlockMotion, Course, MonitorEnd, Motion};
 pub use named::Named;
+pub use read::SummaryError;
 pub use reference_error::ReferenceError;
 pub use stage::StageEnd;
 pub use verdict::{Judgement, Verdict};
@@ -163,38 +164,7 @@ pub struct Invariants {
     pub max_h: f64,
 }
 
-/// Why a summary cannot be read.
-#[derive(Debug, thiserror::Error)]
-pub enum SummaryError {
-    /// The file cannot be read.
-    #[error("cannot read {}: {source}", path.display())]
-    Unreadable {
-        /// The file.
-        path: PathBuf,
-        /// Error of the operating system.
-        source: io::Error,
-    },
-    /// It is no summary of this version.
-    #[error("{}: {source}; it is damaged or of another version of ndda: run the scene again", path.display())]
-    Other {
-        /// The file.
-        path: PathBuf,
-        /// Error of the reader, with line and column.
-        source: serde_json::Error,
-    },
-}
-
 impl Summary {
-    /// Reads `summary.json`.
-    ///
-    /// # Errors
-    /// [`SummaryError`] when the file cannot be read, or is no summary of this version.
-    pub fn read(path: &Path) -> Result<Self, SummaryError> {
-        let unreadable = |source| SummaryError::Unreadable { path: path.to_path_buf(), source };
-        let text = fs::read_to_string(path).map_err(unreadable)?;
-        serde_json::from_str(&text).map_err(|source| SummaryError::Other { path: path.to_path_buf(), source })
-    }
-
     /// Writes the summary to `path`, replacing an older file whole.
     ///
     /// # Errors
@@ -263,6 +233,8 @@ fn first_null(value: &Value, key: &str) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
 
     fn example() -> Summary {
@@ -391,14 +363,5 @@ mod tests {
         summary.verdicts.0[0].1.value = Some(f64::NEG_INFINITY);
         assert_eq!(refused(&summary), "verdicts.energy gained.value");
         assert!(!path.exists());
-    }
-
-    #[test]
-    fn a_summary_that_is_none_is_named_with_its_place() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("summary.json");
-        fs::write(&path, "{\n  \"version\": 3 }").unwrap();
-        let error = Summary::read(&path).unwrap_err().to_string();
-        assert!(error.contains("line 2") && error.contains("run the scene again"), "{error}");
     }
 }

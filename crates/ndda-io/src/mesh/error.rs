@@ -1,25 +1,38 @@
 //! Errors of files of meshes or surfaces.
 
+use std::fmt;
 use std::path::{Path, PathBuf};
 
-use super::msh::error::MshError;
+use super::msh::error::MshProblem;
 
 /// Why a file of a mesh or a surface cannot be used.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum MeshFileError {
-    /// A Gmsh mesh; the error names file and place.
-    #[error(transparent)]
-    Msh(#[from] MshError),
-    /// A file of another format.
-    #[error("{}{}: {problem}", path.display(), line.map(|l| format!(":{l}")).unwrap_or_default())]
-    File {
-        /// The file.
-        path: PathBuf,
-        /// Line of a text, from 1, if it is one line.
-        line: Option<usize>,
-        /// The problem.
-        problem: FileProblem,
-    },
+#[error("{}{}: {problem}", path.display(), place.map(|p| p.to_string()).unwrap_or_default())]
+pub struct MeshFileError {
+    /// The file.
+    pub path: PathBuf,
+    /// Where in the file, if it is one place.
+    pub place: Option<Place>,
+    /// The problem.
+    pub problem: FileProblem,
+}
+
+/// A place in a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// Line of a text, from 1.
+    Line(usize),
+    /// Byte of a binary file, from 0.
+    Byte(usize),
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Line(line) => write!(f, ":{line}"),
+            Self::Byte(byte) => write!(f, ", byte {byte}"),
+        }
+    }
 }
 
 /// One defect of a file.
@@ -142,6 +155,9 @@ pub enum FileProblem {
     /// Another program was needed and did not do its work.
     #[error("{0}")]
     Program(String),
+    /// Something that only Gmsh's meshes can have.
+    #[error(transparent)]
+    Msh(#[from] MshProblem),
 }
 
 /// A problem and the line where it is.
@@ -171,7 +187,7 @@ impl Fault {
 
     /// With the file that it is in.
     pub(crate) fn of(self, path: &Path) -> MeshFileError {
-        MeshFileError::File { path: path.to_owned(), line: self.line, problem: self.problem }
+        MeshFileError { path: path.to_owned(), place: self.line.map(Place::Line), problem: self.problem }
     }
 }
 
@@ -183,16 +199,12 @@ impl From<FileProblem> for Fault {
 
 /// The bytes of the file at `path`.
 pub(crate) fn bytes_of(path: &Path) -> Result<Vec<u8>, MeshFileError> {
-    let fail = |problem: FileProblem| Fault::from(problem).of(path);
-    match whole_file(path) {
-        Ok(bytes) => bytes.ok_or_else(|| fail(FileProblem::NotAFile)),
-        Err(error) => Err(fail(FileProblem::Unreadable(error.to_string()))),
+    let unreadable = |error: std::io::Error| Fault::from(FileProblem::Unreadable(error.to_string())).of(path);
+    // A folder or a device may have no end.
+    if !std::fs::metadata(path).map_err(unreadable)?.is_file() {
+        return Err(Fault::from(FileProblem::NotAFile).of(path));
     }
-}
-
-/// The bytes of a file; `None` for a folder or a device, which may have no end.
-pub(crate) fn whole_file(path: &Path) -> std::io::Result<Option<Vec<u8>>> {
-    if std::fs::metadata(path)?.is_file() { std::fs::read(path).map(Some) } else { Ok(None) }
+    std::fs::read(path).map_err(unreadable)
 }
 
 /// The ending of a path, in small letters.

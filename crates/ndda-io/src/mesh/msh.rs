@@ -15,9 +15,9 @@ mod write;
 
 use std::path::Path;
 
-pub use crate::mesh::MeshFile as MshFile;
-use crate::mesh::error::whole_file;
-pub use error::{MshError, MshProblem, Place};
+use crate::mesh::error::bytes_of;
+use crate::mesh::{MeshFile, MeshFileError};
+pub use error::MshProblem;
 pub(crate) use write::write;
 
 /// Reads a Gmsh mesh.
@@ -28,27 +28,22 @@ pub(crate) use write::write;
 /// Whether the mesh can be computed with is not looked at: see [`ndda_mesh::validate`].
 ///
 /// # Errors
-/// [`MshError`] with the line (ASCII) or byte (binary) when the file cannot be read or understood, holds anything
+/// [`MeshFileError`] with the line (ASCII) or byte (binary) when the file cannot be read or understood, holds anything
 /// but points, lines, triangles and tetrahedra of first order, or leaves open which body a tetrahedron is in.
-pub fn read(path: &Path) -> Result<MshFile, MshError> {
-    let fail = |problem| MshError { path: path.to_owned(), place: None, problem };
-    match whole_file(path) {
-        Ok(Some(bytes)) => parse(path, &bytes),
-        Ok(None) => Err(fail(MshProblem::NotAFile)),
-        Err(error) => Err(fail(MshProblem::Unreadable(error.to_string()))),
-    }
+pub(crate) fn read(path: &Path) -> Result<MeshFile, MeshFileError> {
+    parse(path, &bytes_of(path)?)
 }
 
 /// Reads a Gmsh mesh from memory; `path` is only for the error.
 ///
 /// # Errors
-/// As [`read`].
-pub fn parse(path: &Path, bytes: &[u8]) -> Result<MshFile, MshError> {
+/// As [`mesh::read`](crate::mesh::read) of a file.
+pub fn parse(path: &Path, bytes: &[u8]) -> Result<MeshFile, MeshFileError> {
     let mut cursor = cursor::Cursor::new(bytes);
     sections::read(&mut cursor)
         .and_then(|mesh| bodies::split(&mesh))
-        .map(|bodies| MshFile { bodies })
-        .map_err(|fault| MshError {
+        .map(|bodies| MeshFile { bodies })
+        .map_err(|fault| MeshFileError {
             path: path.to_owned(),
             place: fault.at.map(|at| cursor.place(at)),
             problem: fault.problem,

@@ -96,7 +96,7 @@ const GAP: f64 = 10.0;
 
 impl Gap {
     /// The longest gap between rows, if there is any.
-    pub fn longest_in(rows: &[(f64, f64)]) -> Option<Self> {
+    fn longest_in(rows: &[(f64, f64)]) -> Option<Self> {
         let mut spacings: Vec<(f64, f64)> =
             rows.windows(2).map(|pair| (pair[1].0 - pair[0].0, pair[0].0)).collect();
         spacings.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -104,6 +104,40 @@ impl Gap {
         let (length_s, from_s) = *spacings.last()?;
         (length_s > GAP * usual_s).then_some(Self { from_s, length_s, usual_s })
     }
+}
+
+impl Prepared {
+    /// Times [s] and accelerations [m/s²] of a CSV file, as they are.
+    ///
+    /// # Errors
+    /// [`RecordError`] naming file and row.
+    pub fn as_written(file: &Path) -> Result<Self, RecordError> {
+        let rows = csv(file, &bytes_of(file)?, ACCELERATION)?;
+        let told = format!("{}: {} rows; peak {:.4} m/s²", file.display(), rows.len(), peak_m_s2(&rows));
+        Ok(Self { gap: Gap::longest_in(&rows), rows, told })
+    }
+
+    /// Holds the speed that the record times `factor` brings, acceleration being linear between rows, against that of light.
+    ///
+    /// # Errors
+    /// [`RecordError::Row`] of the first row that is beyond it.
+    pub fn check_speed(&self, file: &Path, factor: f64) -> Result<(), RecordError> {
+        check_speed(file, &self.rows, factor)
+    }
+}
+
+fn check_speed(file: &Path, rows: &[(f64, f64)], factor: f64) -> Result<(), RecordError> {
+    let mut speed_m_s = 0.0;
+    for (row, pair) in (2..).zip(rows.windows(2)) {
+        let [(from_s, a), (to_s, b)] = [pair[0], pair[1]];
+        speed_m_s += factor * (0.5 * a + 0.5 * b) * (to_s - from_s);
+        // NaN is beyond the limit, too.
+        if speed_m_s.is_nan() || speed_m_s.abs() > LIGHT_M_S {
+            let reason = "brings the ground beyond the speed of light: give accelerations in m/s², or a smaller factor";
+            return Err(RecordError::Row { file: file.to_path_buf(), row, reason });
+        }
+    }
+    Ok(())
 }
 
 impl Record {
@@ -151,8 +185,7 @@ impl Record {
             let (c1, c2) = process::corrected(&mut rows, self.baseline);
             told += &format!(", less a velocity of {c1:.4e} m/s² t + {c2:.4e} m/s³ t²");
         }
-        let peak = rows.iter().map(|row| row.1.abs()).fold(0.0, f64::max);
-        told += &format!("; peak {peak:.4} m/s²");
+        told += &format!("; peak {:.4} m/s²", peak_m_s2(&rows));
         Ok(Prepared { rows, told, gap })
     }
 }
@@ -162,14 +195,6 @@ fn uneven(rows: &[(f64, f64)]) -> Option<f64> {
     let spacings = || rows.windows(2).map(|pair| pair[1].0 - pair[0].0);
     let (shortest_s, longest_s) = (spacings().fold(f64::INFINITY, f64::min), spacings().fold(0.0, f64::max));
     (longest_s > shortest_s * (1.0 + EVEN)).then_some(shortest_s)
-}
-
-/// Times [s] and accelerations [m/s²] of a CSV file.
-///
-/// # Errors
-/// [`RecordError`] naming file and row.
-pub fn read(file: &Path) -> Result<Vec<(f64, f64)>, RecordError> {
-    csv(file, &bytes_of(file)?, ACCELERATION)
 }
 
 /// Rows of a file by its ending, and the unit that it names.
@@ -231,22 +256,8 @@ fn csv(file: &Path, bytes: &[u8], column: &str) -> Result<Vec<(f64, f64)>, Recor
     Ok(rows)
 }
 
-/// Holds the speed that a record times `factor` brings, acceleration being linear between rows, against that of light.
-///
-/// # Errors
-/// [`RecordError::Row`] of the first row that is beyond it.
-pub fn check_speed(file: &Path, rows: &[(f64, f64)], factor: f64) -> Result<(), RecordError> {
-    let mut speed_m_s = 0.0;
-    for (row, pair) in (2..).zip(rows.windows(2)) {
-        let [(from_s, a), (to_s, b)] = [pair[0], pair[1]];
-        speed_m_s += factor * (0.5 * a + 0.5 * b) * (to_s - from_s);
-        // NaN is beyond the limit, too.
-        if speed_m_s.is_nan() || speed_m_s.abs() > LIGHT_M_S {
-            let reason = "brings the ground beyond the speed of light: give accelerations in m/s², or a smaller factor";
-            return Err(RecordError::Row { file: file.to_path_buf(), row, reason });
-        }
-    }
-    Ok(())
+fn peak_m_s2(rows: &[(f64, f64)]) -> f64 {
+    rows.iter().map(|row| row.1.abs()).fold(0.0, f64::max)
 }
 
 #[cfg(test)]
@@ -257,7 +268,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("quake.csv");
         std::fs::write(&file, text).unwrap();
-        read(&file).map_err(|error| error.to_string())
+        Prepared::as_written(&file).map(|record| record.rows).map_err(|error| error.to_string())
     }
 
     #[test]
@@ -294,7 +305,7 @@ mod tests {
             let message = read_text(text).unwrap_err();
             assert!(message.contains(word), "{text:?}: {message}");
         }
-        assert!(read(Path::new("no/such.csv")).is_err());
+        assert!(Prepared::as_written(Path::new("no/such.csv")).is_err());
     }
 
     #[test]

@@ -7,7 +7,7 @@ use ndda_fem::{
     Bedding, Damped, Damping, Hold as FemHold, InitialStress, LinearElastic, Material, MaterialError, Motion,
     NodeSupport, Record, TransverselyIsotropic, Voigt,
 };
-use ndda_io::record;
+use ndda_io::record::Prepared;
 use ndda_io::scene::{self, By, Hold, Region, Scene};
 use ndda_mesh::geometry::{Aabb, tet_volume};
 use ndda_mesh::{BlockId, BlockSet};
@@ -249,10 +249,10 @@ fn node_supports(
         }
         (Hold::Acceleration { file, direction, factor }, _) => {
             let file = folder.join(file);
-            let rows = record::read(&file).map_err(|e| e.to_string())?;
-            record::check_speed(&file, &rows, *factor).map_err(|e| e.to_string())?;
+            let record = Prepared::as_written(&file).map_err(|e| e.to_string())?;
+            record.check_speed(&file, *factor).map_err(|e| e.to_string())?;
             let direction = *factor * vec3(*direction).normalize();
-            FemHold::Motion(Motion::Record(Record::new(direction, &rows)))
+            FemHold::Motion(Motion::Record(Record::new(direction, &record.rows)))
         }
         (Hold::Shaking(components), _) => {
             let part = |component: &scene::Component| {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use ndda_io::record::{self, Gap};
+use ndda_io::record::{Gap, Prepared};
 use ndda_io::scene::{Hold, Record, Scene, Stage, matches};
 use ndda_mesh::BlockSet;
 
@@ -102,10 +102,8 @@ type Known = (String, Vec<(f64, f64)>, Option<Gap>);
 
 /// All records of a scene that can be read.
 fn rows(scene: &Scene, folder: &Path) -> Vec<Known> {
-    let prepared = |record: &Record| {
-        let prepared = record.prepared(folder).ok()?;
-        Some((record.file.clone(), prepared.rows, prepared.gap))
-    };
+    let known = |file: &str, prepared: Prepared| (file.to_string(), prepared.rows, prepared.gap);
+    let prepared = |record: &Record| record.prepared(folder).ok().map(|found| known(&record.file, found));
     let waves = scene.quiet.iter().flat_map(|quiet| &quiet.incident).map(|wave| prepared(&wave.record));
     let mut all: Vec<_> = waves.flatten().collect();
     for support in &scene.supports {
@@ -114,10 +112,7 @@ fn rows(scene: &Scene, folder: &Path) -> Vec<Known> {
                 all.extend(components.iter().filter_map(|one| prepared(&one.record)))
             }
             Hold::Acceleration { file, .. } => {
-                all.extend(record::read(&folder.join(file)).ok().map(|rows| {
-                    let gap = Gap::longest_in(&rows);
-                    (file.clone(), rows, gap)
-                }));
+                all.extend(Prepared::as_written(&folder.join(file)).ok().map(|found| known(file, found)))
             }
             _ => {}
         }

@@ -4,7 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use ndda_mesh::BlockMesh;
 
-use super::error::{Fault, MshProblem};
+use super::cursor::Fault;
+use super::error::MshProblem;
 use super::mesh::{Element, Group, Mesh, NO_GROUP};
 
 /// Name of the body of a file without physical groups.
@@ -57,7 +58,7 @@ fn check_assigned(mesh: &Mesh) -> Result<(), Fault> {
         Some(first) if has_groups => {
             let count = 1 + unassigned.count();
             let tets = of_dim(mesh, 3).count();
-            let problem = MshProblem::Unassigned { count, tets, first: first.tag };
+            let problem = MshProblem::Unassigned { count, tets, first: first.tag }.into();
             Err(Fault { at: Some(first.at), problem })
         }
         _ => Ok(()),
@@ -93,7 +94,7 @@ fn name_of(mesh: &Mesh, group: Group) -> String {
 fn indices(mesh: &Mesh, element: &Element) -> Result<[u32; 4], Fault> {
     let used = &element.nodes[..=usize::from(element.group.0)];
     let index = |node: u64| {
-        let problem = MshProblem::NoSuchNode { element: element.tag, node };
+        let problem = MshProblem::NoSuchNode { element: element.tag, node }.into();
         mesh.node_of_tag.get(&node).copied().ok_or(Fault { at: Some(element.at), problem })
     };
     let mut indices = [index(used[0])?; 4];
@@ -115,7 +116,7 @@ fn check_apart(mesh: &Mesh, bodies: &[Body]) -> Result<(), Fault> {
     for element in of_dim(mesh, 3) {
         if sorted(indices(mesh, element)?) == first[0].0 {
             let [a, b] = [first[0].1, first[1].1].map(|id| bodies[id].name.clone());
-            let problem = MshProblem::InTwoBodies { count: shared.len(), element: element.tag, a, b };
+            let problem = MshProblem::InTwoBodies { count: shared.len(), element: element.tag, a, b }.into();
             return Err(Fault { at: Some(element.at), problem });
         }
     }

@@ -2,8 +2,23 @@
 
 use std::str::FromStr;
 
-use super::error::{Fault, MshProblem, Place};
-use crate::mesh::error::excerpt;
+use super::error::MshProblem;
+use crate::mesh::error::{FileProblem, Place, excerpt};
+
+/// A problem and the byte where it is.
+#[derive(Debug)]
+pub(super) struct Fault {
+    /// Byte in the file, if it is one place.
+    pub at: Option<usize>,
+    /// The problem.
+    pub problem: FileProblem,
+}
+
+impl From<MshProblem> for Fault {
+    fn from(problem: MshProblem) -> Self {
+        Self { at: None, problem: problem.into() }
+    }
+}
 
 /// How numbers are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,16 +62,16 @@ impl<'a> Cursor<'a> {
     }
 
     /// `problem` at the item that was read last.
-    pub(crate) fn fault(&self, problem: MshProblem) -> Fault {
-        Fault { at: Some(self.start), problem }
+    pub(crate) fn fault(&self, problem: impl Into<FileProblem>) -> Fault {
+        Fault { at: Some(self.start), problem: problem.into() }
     }
 
     fn unexpected(&self, expected: &str, found: &[u8]) -> Fault {
-        self.fault(MshProblem::Unexpected { expected: expected.to_string(), found: excerpt(found) })
+        self.fault(FileProblem::Unexpected { expected: expected.to_string(), found: excerpt(found) })
     }
 
     fn truncated(&self, expected: &str) -> Fault {
-        Fault { at: Some(self.bytes.len()), problem: MshProblem::Truncated(expected.to_string()) }
+        Fault { at: Some(self.bytes.len()), problem: FileProblem::Truncated(expected.to_string()) }
     }
 
     /// Whether only white space is left.

@@ -1,47 +1,8 @@
 //! Errors of `.msh` files.
 
-use std::fmt;
-use std::path::PathBuf;
-
-/// Why a `.msh` file cannot be used.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{}{}: {problem}", path.display(), place.map(|p| p.to_string()).unwrap_or_default())]
-pub struct MshError {
-    /// The file.
-    pub path: PathBuf,
-    /// Where in the file, if it is one place.
-    pub place: Option<Place>,
-    /// The problem.
-    pub problem: MshProblem,
-}
-
-/// A place in a file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
-    /// Line of an ASCII file, from 1.
-    Line(usize),
-    /// Byte of a binary file, from 0.
-    Byte(usize),
-}
-
-impl fmt::Display for Place {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Line(line) => write!(f, ":{line}"),
-            Self::Byte(byte) => write!(f, ", byte {byte}"),
-        }
-    }
-}
-
-/// One defect of a `.msh` file.
+/// A defect that only a `.msh` file can have.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MshProblem {
-    /// The operating system does not let the file be read.
-    #[error("cannot be read: {0}")]
-    Unreadable(String),
-    /// A folder or a device.
-    #[error("is not a file: name the .msh file")]
-    NotAFile,
     /// The file is empty.
     #[error("is empty: save the mesh again")]
     Empty,
@@ -62,17 +23,6 @@ pub enum MshProblem {
     /// The number 1 that gives the byte order is not there.
     #[error("byte order mark is {0:#010x}: expected 1 in either byte order")]
     ByteOrder(u32),
-    /// The file ends too early.
-    #[error("the file ends where {0} was expected: it is truncated, save it again")]
-    Truncated(String),
-    /// Something else than expected.
-    #[error("expected {expected}, found `{found}`")]
-    Unexpected {
-        /// Item that the format requires here.
-        expected: String,
-        /// Item that was found.
-        found: String,
-    },
     /// A header promises more than the rest of the file can hold.
     #[error(
         "promises {count} {what}, but only {bytes} bytes follow: the file is truncated or damaged, save it again"
@@ -100,9 +50,6 @@ pub enum MshProblem {
     /// More nodes than 32-bit indices can hold.
     #[error("{0} nodes are more than 32-bit indices hold: mesh more coarsely")]
     TooManyNodes(usize),
-    /// Two nodes with the same tag.
-    #[error("node {0} is there twice: remove one")]
-    NodeTwice(u64),
     /// An element with a node that is not in the file.
     #[error("element {element} has node {node}, which is not in $Nodes: save the whole mesh again")]
     NoSuchNode {
@@ -110,14 +57,6 @@ pub enum MshProblem {
         element: u64,
         /// Tag of the node.
         node: u64,
-    },
-    /// A part of the format that would change what the mesh is.
-    #[error("section {section} is not supported: {cure}")]
-    Section {
-        /// Its name, with `$`.
-        section: &'static str,
-        /// Remedy.
-        cure: &'static str,
     },
     /// An element type that Gmsh does not document.
     #[error("element type {0} is unknown: mesh with tetrahedra of first order")]
@@ -179,20 +118,5 @@ fn cure(types: &[(&'static str, usize)]) -> &'static str {
         "mesh with `-order 1` and without recombining"
     } else {
         "mesh without recombining or transfinite volumes of bricks"
-    }
-}
-
-/// A problem and the byte where it is.
-#[derive(Debug)]
-pub(super) struct Fault {
-    /// Byte in the file, if it is one place.
-    pub at: Option<usize>,
-    /// The problem.
-    pub problem: MshProblem,
-}
-
-impl From<MshProblem> for Fault {
-    fn from(problem: MshProblem) -> Self {
-        Self { at: None, problem }
     }
 }

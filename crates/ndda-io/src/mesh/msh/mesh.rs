@@ -4,8 +4,9 @@ use std::collections::{BTreeMap, HashMap};
 
 use ndda_mesh::Vec3;
 
-use super::cursor::Cursor;
-use super::error::{Fault, MshProblem};
+use super::cursor::{Cursor, Fault};
+use super::error::MshProblem;
+use crate::mesh::error::FileProblem;
 
 /// A physical group: its dimension and its tag.
 pub(super) type Group = (u8, u32);
@@ -44,7 +45,7 @@ impl Mesh {
             return Err(cursor.fault(MshProblem::TooManyNodes(self.nodes.len() + 1)));
         };
         if self.node_of_tag.insert(tag, index).is_some() {
-            return Err(cursor.fault(MshProblem::NodeTwice(tag)));
+            return Err(cursor.fault(FileProblem::Twice { what: "node", id: tag }));
         }
         self.nodes.push(at);
         Ok(())
@@ -138,7 +139,7 @@ pub(super) fn point(cursor: &mut Cursor) -> Result<Vec3, Fault> {
         if !point[axis].is_finite() {
             let found = point[axis].to_string();
             return Err(
-                cursor.fault(MshProblem::Unexpected { expected: "a finite coordinate".into(), found })
+                cursor.fault(FileProblem::Unexpected { expected: "a finite coordinate".into(), found })
             );
         }
     }

@@ -1,10 +1,10 @@
 //! The frame that both versions share: sections, the format header, the names of physical groups.
 
-use super::cursor::{Cursor, Encoding};
-use super::error::{Fault, MshProblem};
+use super::cursor::{Cursor, Encoding, Fault};
+use super::error::MshProblem;
 use super::mesh::Mesh;
 use super::{v2, v4};
-use crate::mesh::error::excerpt;
+use crate::mesh::error::{FileProblem, excerpt};
 
 /// Versions that are read.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -30,17 +30,16 @@ pub(super) fn read(cursor: &mut Cursor) -> Result<Mesh, Fault> {
     while !cursor.is_at_end() {
         let word = cursor.word("a section")?;
         if !word.starts_with(b"$") {
+            let found = excerpt(word);
             return Err(cursor.fault(match version {
-                None => MshProblem::NotMsh(excerpt(word)),
-                Some(_) => {
-                    MshProblem::Unexpected { expected: "the start of a section".into(), found: excerpt(word) }
-                }
+                None => MshProblem::NotMsh(found).into(),
+                Some(_) => FileProblem::Unexpected { expected: "the start of a section".into(), found },
             }));
         }
         // The rest of the line is empty; what follows may be binary.
         cursor.rest_of_line();
         if let Some(&(section, cure)) = REFUSED.iter().find(|(name, _)| name.as_bytes() == word) {
-            return Err(cursor.fault(MshProblem::Section { section, cure }));
+            return Err(cursor.fault(FileProblem::NotRead { what: format!("section {section}"), cure }));
         }
         match (word, version) {
             (b"$MeshFormat", None) => version = Some(format(cursor)?),
@@ -103,7 +102,7 @@ fn names(cursor: &mut Cursor, mesh: &mut Mesh) -> Result<(), Fault> {
         let name = std::str::from_utf8(line).ok().and_then(|text| text.strip_prefix('"')?.strip_suffix('"'));
         let Some(name) = name.filter(|name| !name.is_empty()) else {
             let expected = "a name in quotes, in UTF-8".to_string();
-            return Err(cursor.fault(MshProblem::Unexpected { expected, found: excerpt(line) }));
+            return Err(cursor.fault(FileProblem::Unexpected { expected, found: excerpt(line) }));
         };
         mesh.names.insert((dim, tag.unsigned_abs()), name.to_string());
     }

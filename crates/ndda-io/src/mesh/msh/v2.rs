@@ -1,8 +1,9 @@
 //! `$Nodes` and `$Elements` of format 2.2. Counts are text even in binary files.
 
-use super::cursor::Cursor;
-use super::error::{Fault, MshProblem};
+use super::cursor::{Cursor, Fault};
+use super::error::MshProblem;
 use super::mesh::{Kind, Mesh, NO_GROUP, element_kind, point};
+use crate::mesh::error::FileProblem;
 
 /// `tag x y z` per node.
 pub(super) fn nodes(cursor: &mut Cursor, mesh: &mut Mesh) -> Result<(), Fault> {
@@ -83,6 +84,6 @@ fn natural(cursor: &mut Cursor, expected: &str) -> Result<u64, Fault> {
     let value = cursor.int(expected)?;
     u64::try_from(value).map_err(|_| {
         let expected = format!("{expected}, not negative");
-        cursor.fault(MshProblem::Unexpected { expected, found: value.to_string() })
+        cursor.fault(FileProblem::Unexpected { expected, found: value.to_string() })
     })
 }

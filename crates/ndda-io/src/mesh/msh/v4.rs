@@ -5,8 +5,8 @@
 
 use std::collections::HashMap;
 
-use super::cursor::Cursor;
-use super::error::{Fault, MshProblem};
+use super::cursor::{Cursor, Fault};
+use super::error::MshProblem;
 use super::mesh::{Kind, Mesh, element_kind, point};
 
 /// Physical groups of each geometric entity, by its dimension and tag.

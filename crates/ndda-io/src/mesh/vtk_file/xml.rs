@@ -147,7 +147,7 @@ impl Encoding<'_> {
 
     /// The bytes of an array behind its header.
     fn bytes(&self, source: &mut Source) -> Result<Vec<u8>, FileProblem> {
-        let mut word = || {
+        let mut word = || -> Result<usize, FileProblem> {
             let bytes = source.take(self.header.size()).ok_or_else(|| truncated("the header of an array"))?;
             Ok(self.header.numbers(&bytes, self.is_big)[0] as usize)
         };
