@@ -32,7 +32,7 @@
 //! | [`cut`] | rock cut by joints, and Voronoi cells |
 //! | [`tetrahedralise`] | tetrahedra that fill a polyhedron |
 //! | [`validate`], [`quality`], [`repair`] | problems of a mesh, how good it is, and changes that mend it when asked to |
-//! | [`geometry`], [`surface`], [`stats`], [`ids`] | volumes and boxes, boundary triangles, counts, typed indices |
+//! | [`geometry`], [`planar`], [`surface`], [`stats`], [`ids`] | volumes and boxes, polygons, boundary triangles, counts, typed indices |
 
 #![warn(unreachable_pub)]
 
@@ -43,6 +43,7 @@ pub mod generate;
 pub mod geometry;
 pub mod ids;
 mod node_sets;
+pub mod planar;
 pub mod quality;
 pub mod repair;
 pub mod stats;

@@ -8,6 +8,7 @@ use std::fmt;
 
 use ndda_io::scene::{Contact, Potential, Scene, matches};
 use ndda_mesh::geometry::{Aabb, triangle_area_vector};
+use ndda_mesh::planar::{clipped, hull_of_sorted, turn};
 use ndda_mesh::{BlockId, Vec3};
 use ndda_solver::{BodyKind, Simulation};
 
@@ -180,7 +181,7 @@ impl Base {
         let distance = |(a, b): ([f64; 2], [f64; 2])| {
             let along = [b[0] - a[0], b[1] - a[1]];
             let long = along[0].hypot(along[1]);
-            (turn(a, b, [0.0; 2]) / long, [along[0] / long, along[1] / long])
+            (turn(&a, &b, &[0.0; 2]) / long, [along[0] / long, along[1] / long])
         };
         let (inside_m, along) = edges.map(distance).min_by(|a, b| a.0.total_cmp(&b.0))?;
         let extent = |axis: [f64; 2]| {
@@ -192,49 +193,10 @@ impl Base {
     }
 }
 
-/// Twice the area of a triangle, positive where it is counter-clockwise.
-fn turn(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
-    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-}
-
-/// The convex hull, counter-clockwise (Andrew 1979).
+/// The convex hull, counter-clockwise.
 fn hull(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     points.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
-    let half = |points: &mut dyn Iterator<Item = &[f64; 2]>| {
-        let mut chain: Vec<[f64; 2]> = Vec::new();
-        for &point in points {
-            while chain.len() > 1 && turn(chain[chain.len() - 2], chain[chain.len() - 1], point) <= 0.0 {
-                chain.pop();
-            }
-            chain.push(point);
-        }
-        chain.pop();
-        chain
-    };
-    let mut found = half(&mut points.iter());
-    found.extend(half(&mut points.iter().rev()));
-    found
-}
-
-/// A polygon within a convex one (Sutherland & Hodgman 1974).
-fn clipped(mut polygon: Vec<[f64; 2]>, outline: &[[f64; 2]]) -> Vec<[f64; 2]> {
-    for k in 0..outline.len() {
-        let (a, b) = (outline[k], outline[(k + 1) % outline.len()]);
-        let mut inside = Vec::new();
-        for i in 0..polygon.len() {
-            let (p, q) = (polygon[i], polygon[(i + 1) % polygon.len()]);
-            let (at_p, at_q) = (turn(a, b, p), turn(a, b, q));
-            if at_p >= 0.0 {
-                inside.push(p);
-            }
-            if at_p * at_q < 0.0 {
-                let part = at_p / (at_p - at_q);
-                inside.push([p[0] + part * (q[0] - p[0]), p[1] + part * (q[1] - p[1])]);
-            }
-        }
-        polygon = inside;
-    }
-    polygon
+    hull_of_sorted(&points, |at| *at, 0.0)
 }
 
 #[cfg(test)]

@@ -20,6 +20,7 @@ mod report;
 
 use std::path::PathBuf;
 
+use ndda_io::scene::Friction;
 use serde::Serialize;
 
 pub use error::StereonetError;
@@ -39,8 +40,6 @@ const TOPPLING_LATERAL_DEG: f64 = 30.0;
 
 /// Dips up to a right angle, in radians, are below it.
 const RADIANS_AT_MOST: f64 = 1.6;
-/// Friction angles below it [°] are probably coefficients: no joint has one so small.
-const LEAST_LIKELY_DEG: f64 = 2.0;
 
 /// Most sets that a table and a picture list.
 const MOST_LISTED: usize = 12;
@@ -213,9 +212,7 @@ fn measure(planes: &Planes, slope: Option<Slope>) -> Stereonet {
 
 /// That an angle is so small that it is probably a coefficient of friction.
 fn as_coefficient(friction_deg: f64) -> Option<String> {
-    let is_small = 0.0 < friction_deg && friction_deg < LEAST_LIKELY_DEG;
-    is_small.then(|| {
-        let degrees = friction_deg.atan().to_degrees();
+    Friction::deg_of_coefficient(friction_deg).map(|degrees| {
         format!("--friction {friction_deg} is read as degrees; if it is the coefficient tan φ, write --friction {degrees:.1}")
     })
 }

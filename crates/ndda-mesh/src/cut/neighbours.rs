@@ -3,6 +3,7 @@
 use super::polyhedron::Polyhedron;
 use super::surfaces::{Neighbour, Surface, SurfaceKind};
 use crate::Vec3;
+use crate::planar::clipped;
 
 /// A face in its plane: the two coordinates across the largest component of the normal.
 struct Flat {
@@ -75,7 +76,7 @@ fn sweep(
             if apart || low.block == high.block {
                 continue;
             }
-            let shared = overlap(&low.ring, &high.ring);
+            let shared = area(&clipped(low.ring.clone(), &high.ring));
             let extent = (0..2).map(|i| low.max[i].min(high.max[i]) - low.min[i].max(high.min[i]));
             if shared > tolerance_m * extent.fold(0.0, f64::max) {
                 found.push(Neighbour {
@@ -97,38 +98,16 @@ fn area(ring: &[[f64; 2]]) -> f64 {
     0.5 * ring.windows(2).map(twice).sum::<f64>()
 }
 
-/// Area shared by two convex polygons: Sutherland & Hodgman (1974).
-fn overlap(subject: &[[f64; 2]], clip: &[[f64; 2]]) -> f64 {
-    let mut ring = subject.to_vec();
-    for (i, &[ax, ay]) in clip.iter().enumerate() {
-        let [bx, by] = clip[(i + 1) % clip.len()];
-        let height = |p: &[f64; 2]| (bx - ax) * (p[1] - ay) - (by - ay) * (p[0] - ax);
-        let mut kept = Vec::with_capacity(ring.len() + 1);
-        for (j, p) in ring.iter().enumerate() {
-            let q = &ring[(j + 1) % ring.len()];
-            let (hp, hq) = (height(p), height(q));
-            if hp >= 0.0 {
-                kept.push(*p);
-            }
-            if hp * hq < 0.0 {
-                let t = hp / (hp - hq);
-                kept.push([p[0] + t * (q[0] - p[0]), p[1] + t * (q[1] - p[1])]);
-            }
-        }
-        ring = kept;
-    }
-    area(&ring)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn shifted_squares_share_their_overlap() {
-        let square = |x: f64, y: f64| [[x, y], [x + 1.0, y], [x + 1.0, y + 1.0], [x, y + 1.0]];
-        assert!((overlap(&square(0.0, 0.0), &square(0.25, 0.5)) - 0.375).abs() < 1e-15);
-        assert_eq!(overlap(&square(0.0, 0.0), &square(1.0, 0.0)), 0.0);
-        assert_eq!(overlap(&square(0.0, 0.0), &square(3.0, 0.0)), 0.0);
+        let square = |x: f64, y: f64| vec![[x, y], [x + 1.0, y], [x + 1.0, y + 1.0], [x, y + 1.0]];
+        let shared = |subject, clip: &[[f64; 2]]| area(&clipped(subject, clip));
+        assert!((shared(square(0.0, 0.0), &square(0.25, 0.5)) - 0.375).abs() < 1e-15);
+        assert_eq!(shared(square(0.0, 0.0), &square(1.0, 0.0)), 0.0);
+        assert_eq!(shared(square(0.0, 0.0), &square(3.0, 0.0)), 0.0);
     }
 }

@@ -7,6 +7,7 @@
 //! around its centre.
 
 use ndda_mesh::geometry::{Aabb, triangle_area_vector};
+use ndda_mesh::planar::{hull_of_sorted, turn};
 use ndda_mesh::{BlockId, BlockSet, NodeId, TriangleId, Vec3};
 
 use crate::affine::surface::BlockFaces;
@@ -120,7 +121,7 @@ impl FaceContactor {
             points.push((n, at));
         }
         let hull = hull_of(points);
-        let fills = hull.windows(3).map(|w| cross(&hull[0].1, &w[1].1, &w[2].1)).sum::<f64>();
+        let fills = hull.windows(3).map(|w| turn(&hull[0].1, &w[1].1, &w[2].1)).sum::<f64>();
         // A face that does not fill its hull would be another one.
         if hull.len() > MOST_CORNERS || (fills - times).abs() > STRAIGHT * times {
             return None;
@@ -141,11 +142,11 @@ impl FaceContactor {
         let corners = self.outline.corners();
         let last = corners.len() - 1;
         // The triangle of the fan about the first corner that the centre is in: before the first edge that has it on its right.
-        let k = (2..last).find(|&k| cross(&corners[0], &corners[k], &at) < 0.0).unwrap_or(last);
+        let k = (2..last).find(|&k| turn(&corners[0], &corners[k], &at) < 0.0).unwrap_or(last);
         let (a, b, c) = (&corners[0], &corners[k - 1], &corners[k]);
-        let twice = cross(a, b, c);
+        let twice = turn(a, b, c);
         // A centre that is outside by rounding stays so by rounding.
-        let (second, third) = (cross(a, &at, c) / twice, cross(a, b, &at) / twice);
+        let (second, third) = (turn(a, &at, c) / twice, turn(a, b, &at) / twice);
         let nodes = [self.nodes[0], self.nodes[k - 1], self.nodes[k]];
         let first = 1.0 - second - third;
         [(nodes[0], total * first), (nodes[1], total * second), (nodes[2], total * third)]
@@ -179,12 +180,7 @@ fn range_of(outline: &Outline) -> PsiRange {
     })
 }
 
-/// Twice the area of a triangle, positive where it turns to the left.
-fn cross(a: &[f64; 2], b: &[f64; 2], c: &[f64; 2]) -> f64 {
-    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-}
-
-/// The convex hull of points, counter-clockwise, without corners that hardly turn (Andrew 1979).
+/// The convex hull of points, counter-clockwise, without corners that hardly turn.
 fn hull_of(mut points: Vec<(NodeId, [f64; 2])>) -> Vec<(NodeId, [f64; 2])> {
     points.sort_by_key(|(n, _)| *n);
     points.dedup_by_key(|(n, _)| *n);
@@ -194,23 +190,7 @@ fn hull_of(mut points: Vec<(NodeId, [f64; 2])>) -> Vec<(NodeId, [f64; 2])> {
     for column in points.chunk_by_mut(is_one_column) {
         column.sort_by(|(_, p), (_, q)| p[1].total_cmp(&q[1]));
     }
-    let chain = |points: &mut dyn Iterator<Item = (NodeId, [f64; 2])>| {
-        let mut chain: Vec<(NodeId, [f64; 2])> = Vec::new();
-        for point in points {
-            while let [.., before, last] = &chain[..] {
-                if cross(&before.1, &last.1, &point.1) > STRAIGHT {
-                    break;
-                }
-                chain.pop();
-            }
-            chain.push(point);
-        }
-        chain.pop();
-        chain
-    };
-    let mut hull = chain(&mut points.iter().copied());
-    hull.extend(chain(&mut points.iter().rev().copied()));
-    hull
+    hull_of_sorted(&points, |(_, at)| *at, STRAIGHT)
 }
 
 #[cfg(test)]

@@ -7,8 +7,6 @@ use crate::scene::{Contact, Dilation, FractureEnergy, Friction, Memory, Potentia
 /// Typical friction angles, as advice.
 const TYPICAL: &str =
     "typical are 25° to 40° for joints in rock, 10° to 20° with clay in them; μ = 0.6 is 31°";
-/// Angles below it [°] are probably coefficients: no joint has one so small, and coefficients lie below it.
-const LEAST_LIKELY_DEG: f64 = 2.0;
 /// Largest roughness coefficient.
 const MOST_JRC: f64 = 20.0;
 
@@ -18,6 +16,16 @@ const SOFTEST_JOINT_PA_M: f64 = 1e4;
 const LEAST_STRENGTH_PA: f64 = 100.0;
 /// Strength [Pa] below that of any wall of a joint; soil has more.
 const LEAST_WALL_PA: f64 = 1e4;
+
+/// Angles below it [°] are probably coefficients: no joint has one so small, and coefficients lie below it.
+const LEAST_LIKELY_DEG: f64 = 2.0;
+
+impl Friction {
+    /// The angle [°] whose tangent is a number that is given as an angle and is too small for one of a joint: it is probably tan φ.
+    pub fn deg_of_coefficient(angle_deg: f64) -> Option<f64> {
+        (0.0 < angle_deg && angle_deg < LEAST_LIKELY_DEG).then(|| angle_deg.atan().to_degrees())
+    }
+}
 
 impl Check<'_> {
     /// Warns of a value with its unit that is positive and too small to mean anything.
@@ -29,11 +37,10 @@ impl Check<'_> {
 
     /// Warns of an angle [°] that is probably a coefficient of friction.
     pub(super) fn coefficient(&mut self, path: String, angle_deg: f64) {
-        if angle_deg > 0.0 && angle_deg < LEAST_LIKELY_DEG {
-            let degrees = format!("{:.1}", angle_deg.atan().to_degrees());
+        if let Some(degrees) = Friction::deg_of_coefficient(angle_deg) {
             let message = format!("{angle_deg}° is less than any joint has");
             let help = format!(
-                "if {angle_deg} is meant as the coefficient tan φ, write {degrees}; if it is in radians, Radians({angle_deg})"
+                "if {angle_deg} is meant as the coefficient tan φ, write {degrees:.1}; if it is in radians, Radians({angle_deg})"
             );
             self.warn(Code::UnitSlip, path, message, help);
         }

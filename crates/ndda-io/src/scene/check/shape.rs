@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use ndda_mesh::planar::turn;
+
 use super::Check;
 use crate::mesh::gmsh_program;
 use crate::scene::{Fill, Grading, Shape, Towards};
@@ -20,7 +22,7 @@ impl Check<'_> {
             }
             Shape::Prism { outline_m: [a, b, c], height_m, cells } => {
                 self.positive(format!("{path}.height_m"), *height_m, "m");
-                let twice_area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+                let twice_area = turn(a, b, c);
                 if twice_area < 0.0 {
                     let help = "swap two corners";
                     self.error(format!("{path}.outline_m"), "the corners run clockwise", help);
