@@ -6,6 +6,8 @@
 
 use std::collections::BTreeSet;
 
+use serde::Serialize;
+
 use super::polyhedron::{Face, Polyhedron};
 use super::random::frame;
 use crate::Vec3;
@@ -29,7 +31,7 @@ impl Default for DiscRule {
 }
 
 /// Discs of a cut in numbers; blocks are convex parts at the time a disc comes to them.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct DiscReport {
     /// Discs.
     pub discs: usize,

@@ -15,34 +15,19 @@ use crate::numbers::{counted, four_figures};
 
 /// Discs of a rock in numbers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Discs {
-    /// Discs.
-    pub discs: usize,
-    /// Discs that cut nothing.
-    pub idle: usize,
-    /// Blocks that were cut by a disc.
-    pub cuts: usize,
-    /// Of these, blocks in which the disc ends: their joint is larger than the disc.
-    pub ends_in_cut: usize,
-    /// How often a disc ends in a block and leaves it whole; a block counts once for each such disc.
-    pub left_whole: usize,
-    /// Area of the discs in the rock [m²].
-    pub disc_m2: f64,
-    /// Area of the joints that they made [m²].
-    pub joint_m2: f64,
-}
+#[serde(transparent)]
+pub struct Discs(DiscReport);
 
 impl Discs {
     /// None where there are no discs.
     pub(super) fn new(report: &DiscReport) -> Option<Self> {
-        let DiscReport { discs, idle, cuts, ends_in_cut, left_whole, disc_m2, joint_m2 } = *report;
-        (discs > 0).then_some(Self { discs, idle, cuts, ends_in_cut, left_whole, disc_m2, joint_m2 })
+        (report.discs > 0).then_some(Self(*report))
     }
 }
 
 impl fmt::Display for Discs {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let Self { discs, idle, cuts, ends_in_cut, left_whole, disc_m2, joint_m2 } = self;
+        let DiscReport { discs, idle, cuts, ends_in_cut, left_whole, disc_m2, joint_m2 } = &self.0;
         let left_whole = match left_whole {
             0 => "never".into(),
             n => counted(*n, "time", "times"),
