@@ -6,7 +6,7 @@ use std::path::Path;
 use ndda_io::read::Chosen;
 use serde::Serialize;
 
-use crate::bodies::Bodies;
+use crate::body_counts::BodyCounts;
 use crate::bolt_report::BoltReports;
 use crate::build::RockReport;
 use crate::forecast::cost::Guess;
@@ -30,7 +30,7 @@ pub struct Checked<'a> {
     pub tets: usize,
     /// How they may move.
     #[serde(flatten)]
-    pub bodies: Bodies,
+    pub bodies: BodyCounts,
     /// Steps of the run.
     pub steps: u64,
     /// Longest step that contact allows [s].

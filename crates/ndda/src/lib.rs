@@ -48,7 +48,7 @@
 //! | `picture` | pictures as SVG and PNG (features `plots`, `png`) |
 //! | `view3d` | pictures and animations of blocks in 3D (features `plots`, `png`) |
 
-pub mod bodies;
+pub mod body_counts;
 pub mod bolt_report;
 pub mod build;
 pub mod certify;

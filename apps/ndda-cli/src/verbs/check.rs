@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use ndda::bodies::Bodies;
+use ndda::body_counts::BodyCounts;
 use ndda::bolt_report::BoltReports;
 use ndda::checked::Checked;
 use ndda::forecast::{cost, doubts, step};
@@ -46,7 +46,7 @@ pub fn check(args: &CheckArgs) -> u8 {
         blocks: blocks.len(),
         nodes: blocks.rest_position.len(),
         tets: blocks.tets.len(),
-        bodies: Bodies::of(simulation),
+        bodies: BodyCounts::of(simulation),
         steps: model.steps(),
         advised_step_s: advice.as_ref().map(|advice| advice.step_s),
         contact_stability: advice.as_ref(),

@@ -9,7 +9,7 @@ use crate::numbers::counted;
 
 /// Blocks by how they may move, and what is solved for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct Bodies {
+pub struct BodyCounts {
     /// Blocks that do not move, or as prescribed.
     #[serde(skip)]
     pub fixed: usize,
@@ -28,7 +28,7 @@ pub struct Bodies {
     pub factors: usize,
 }
 
-impl Bodies {
+impl BodyCounts {
     /// Of a simulation.
     pub fn of(simulation: &Simulation) -> Self {
         let mut bodies =
@@ -45,7 +45,7 @@ impl Bodies {
     }
 }
 
-impl fmt::Display for Bodies {
+impl fmt::Display for BodyCounts {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let Self { fixed, rigid, affine, elastic, unknowns, factors } = *self;
         let each = |count: usize| if count > 1 { " each" } else { "" };
@@ -72,9 +72,9 @@ mod tests {
 
     #[test]
     fn rigid_blocks_have_six_degrees_of_freedom_and_nothing_is_said_of_matrices() {
-        let bodies = Bodies { fixed: 3, rigid: 1, ..Bodies::default() };
+        let bodies = BodyCounts { fixed: 3, rigid: 1, ..BodyCounts::default() };
         assert_eq!(bodies.to_string(), "3 fixed; 1 rigid, six degrees of freedom");
-        let bodies = Bodies { rigid: 2, elastic: 1, unknowns: 24, factors: 1, ..Bodies::default() };
+        let bodies = BodyCounts { rigid: 2, elastic: 1, unknowns: 24, factors: 1, ..BodyCounts::default() };
         assert_eq!(
             bodies.to_string(),
             "2 rigid, six degrees of freedom each; 1 deforming by tetrahedra; 24 unknowns in 1 factored matrix"
