@@ -174,7 +174,7 @@ impl Summary {
         let encode =
             |e: serde_json::Error| WriteError::Encode { path: path.to_path_buf(), reason: e.to_string() };
         let mut nulls = Nulls::default();
-        serde_json::to_writer(&mut nulls, self).map_err(encode)?;
+        self.write_to(&mut nulls).map_err(encode)?;
         if nulls.count > usize::from(self.reference.is_none()) {
             let tree = serde_json::to_value(self).map_err(encode)?;
             let key = first_null(&tree, "").unwrap_or_default();
@@ -182,10 +182,14 @@ impl Summary {
         }
         atomic::write_by(path, |file| {
             let mut out = BufWriter::new(file);
-            serde_json::to_writer_pretty(&mut out, self)?;
+            self.write_to(&mut out)?;
             out.write_all(b"\n")?;
             out.flush()
         })
+    }
+
+    fn write_to(&self, mut to: &mut dyn Write) -> serde_json::Result<()> {
+        serde_json::to_writer_pretty(&mut to, self)
     }
 }
 

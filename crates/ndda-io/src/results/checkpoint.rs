@@ -71,20 +71,23 @@ pub enum CheckpointError {
 
 /// CRC-32 of a value's encoding: equal values, bit for bit, have equal ones.
 pub fn fingerprint(value: &impl Serialize) -> u32 {
-    let mut encoding = Encoding::of(std::io::sink());
+    let mut nowhere = std::io::sink();
+    let mut encoding = Encoding::of(&mut nowhere);
     encoding.add(value).map_or(0, |()| encoding.crc.finalize())
 }
 
 /// Bytes of a value's encoding.
 pub fn size(value: &impl Serialize) -> u64 {
-    let mut encoding = Encoding::of(std::io::sink());
+    let mut nowhere = std::io::sink();
+    let mut encoding = Encoding::of(&mut nowhere);
     encoding.add(value).map_or(0, |()| encoding.bytes)
 }
 
 /// A value as bytes, to hand it to another process of the same program.
 pub fn to_bytes(value: &impl Serialize) -> Vec<u8> {
-    let mut encoding = Encoding::of(Vec::new());
-    encoding.add(value).map_or(Vec::new(), |()| encoding.to)
+    let mut bytes = Vec::new();
+    let encoded = Encoding::of(&mut bytes).add(value);
+    encoded.map_or(Vec::new(), |()| bytes)
 }
 
 /// The value that [`to_bytes`] was given; none where it could not be encoded.
@@ -92,17 +95,17 @@ pub fn from_bytes<T: DeserializeOwned>(bytes: &[u8]) -> Option<T> {
     postcard::from_bytes(bytes).ok()
 }
 
-/// Encoded values on their way to a file, never in memory as a whole.
-struct Encoding<W> {
-    to: W,
+/// Encoded values on their way to a file, never in memory as a whole. Wherever they go, each type is encoded by the same code.
+struct Encoding<'a> {
+    to: &'a mut dyn Write,
     crc: crc32fast::Hasher,
     bytes: u64,
     /// Why the file cannot be written: the encoder would not say.
     failed: Option<std::io::Error>,
 }
 
-impl<W: Write> Encoding<W> {
-    fn of(to: W) -> Self {
+impl<'a> Encoding<'a> {
+    fn of(to: &'a mut dyn Write) -> Self {
         Self { to, crc: crc32fast::Hasher::new(), bytes: 0, failed: None }
     }
 
@@ -113,7 +116,7 @@ impl<W: Write> Encoding<W> {
     }
 }
 
-impl<W: Write> Write for Encoding<W> {
+impl Write for Encoding<'_> {
     fn write(&mut self, piece: &[u8]) -> std::io::Result<usize> {
         if let Err(error) = self.to.write_all(piece) {
             let kind = error.kind();
@@ -153,7 +156,8 @@ impl OutputFolder {
 /// [`WriteError`] when the value cannot be encoded or the file not be written.
 pub fn write_file(path: &Path, value: &impl Serialize) -> Result<(), WriteError> {
     let refused = |e: postcard::Error| WriteError::Encode { path: path.to_path_buf(), reason: e.to_string() };
-    let mut counted = Encoding::of(std::io::sink());
+    let mut nowhere = std::io::sink();
+    let mut counted = Encoding::of(&mut nowhere);
     counted.add(value).map_err(refused)?;
     atomic::write_by(path, |file| {
         let mut encoding = Encoding::of(file);

@@ -5,7 +5,6 @@ use std::path::Path;
 use ndda_io::WriteError;
 use ndda_io::table::Table;
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
 
 use super::chaos::Chaos;
 use super::extrapolate::{
@@ -326,8 +325,7 @@ impl Certificate {
     /// Reads the certificate in a folder; none where there is none, or it has another form.
     pub fn read(folder: &Path) -> Option<Self> {
         let text = std::fs::read_to_string(folder.join(FILE)).ok()?;
-        let value: Value = serde_json::from_str(&text).ok()?;
-        (value["schema"] == SCHEMA).then(|| serde_json::from_value(value).ok())?
+        serde_json::from_str(&text).ok().filter(|found: &Self| found.schema == SCHEMA)
     }
 
     /// A quantity by its name.
