@@ -188,8 +188,8 @@ impl Summary {
         })
     }
 
-    fn write_to(&self, mut to: &mut dyn Write) -> serde_json::Result<()> {
-        serde_json::to_writer_pretty(&mut to, self)
+    fn write_to(&self, to: &mut dyn Write) -> serde_json::Result<()> {
+        serde_json::to_writer_pretty(to, self)
     }
 }
 

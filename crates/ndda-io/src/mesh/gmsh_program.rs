@@ -97,7 +97,7 @@ fn by_program(geometry: &Path, sizes: &Sizes, program: Option<&Path>) -> Result<
     }
     let bytes = std::fs::read(&result).map_err(|e| fail(FileProblem::Unreadable(e.to_string())))?;
     // Errors name the geometry: the mesh is gone by then.
-    Ok(crate::mesh::msh::parse(geometry, &bytes)?)
+    crate::mesh::msh::parse(geometry, &bytes)
 }
 
 /// Gmsh's fields for the places where edges are shorter; the least counts.
