@@ -271,6 +271,17 @@ pub struct Bond {
     pub part: f64,
     /// Part of it that is broken, where bonds break gradually.
     pub damage: f64,
+    /// By how much it has slipped, where bonds slip without breaking [m].
+    pub slip_m: f64,
+    /// Its part of the facet's normal force where that acts at each corner of the facet; in between it is linear.
+    pub bears: [f64; 3],
+}
+
+impl Bond {
+    /// What it bears of a force whose moments on the corners of the facet are these.
+    pub(crate) fn borne(&self, weights: &[f64; 3]) -> f64 {
+        self.bears.iter().zip(weights).map(|(part, weight)| part * weight).sum()
+    }
 }
 
 /// Motion of a block at the start of a step, and the push of contact in it, for contact damping.

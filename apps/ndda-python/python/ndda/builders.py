@@ -1546,12 +1546,12 @@ class Friction(Builder):
         Cohesion c [Pa]: shear strength max(0, c + σ tan φ), compression positive, until it breaks for good;
         needs `shear_penalty_pa_m`. Default: 0.
     tension_pa : float, optional
-        Tensile strength σ_t [Pa], until it breaks for good; beyond c/tan φ it holds only without shear; needs
+        Tensile strength σ_t [Pa], until the joint opens; beyond c/tan φ it holds only without shear; needs
         `shear_penalty_pa_m`. Default: 0.
     residual : Residual, optional
         Values to which friction and cohesion fall while the joint slips, instead of cohesion that breaks at
-        once; with the same values as the peak the joint is perfectly plastic. Needs `shear_penalty_pa_m`, and
-        no tension. Default: none.
+        once; with the same values as the peak the joint is perfectly plastic. Needs `shear_penalty_pa_m`.
+        Default: none.
     roughness : Roughness, optional
         Roughness after Barton and Bandis: shear strength σ tan(φ_r + JRC log₁₀(JCS/σ)), `friction_deg` being
         the residual angle φ_r, and the whole angle at most 70°. Needs `shear_penalty_pa_m`, and no cohesion,
@@ -2978,6 +2978,10 @@ class Residual(Builder):
         Residual friction angle φ_r [°].
     cohesion_pa : float, optional
         Residual cohesion c_r [Pa]. Default: 0.
+    tension_pa : float, optional
+        What is left of the tensile strength where the joint has slipped and not opened [Pa]. With c/tan φ, at
+        the peak and here, Mohr and Coulomb's line holds up to its apex, as limit equilibrium assumes.
+        Default: 0.
     over_m : float, optional
         Slip over which strength falls linearly [m]. Default: 0, at once.
 
@@ -2989,8 +2993,9 @@ class Residual(Builder):
 
     friction_deg: float
     cohesion_pa: float | None = None
+    tension_pa: float | None = None
     over_m: float | None = None
-    _kinds: ClassVar[Mapping[str, str]] = {"friction_deg": "num", "cohesion_pa": "num", "over_m": "num"}
+    _kinds: ClassVar[Mapping[str, str]] = {"friction_deg": "num", "cohesion_pa": "num", "tension_pa": "num", "over_m": "num"}
 
 
 @dataclass(kw_only=True)

@@ -90,11 +90,11 @@ pub struct Friction {
     /// Cohesion c [Pa]: shear strength max(0, c + σ tan φ), compression positive, until it breaks for good; needs `shear_penalty_pa_m`. Default: 0.
     #[serde(default)]
     pub cohesion_pa: f64,
-    /// Tensile strength σ_t [Pa], until it breaks for good; beyond c/tan φ it holds only without shear; needs `shear_penalty_pa_m`. Default: 0.
+    /// Tensile strength σ_t [Pa], until the joint opens; beyond c/tan φ it holds only without shear; needs `shear_penalty_pa_m`. Default: 0.
     #[serde(default)]
     pub tension_pa: f64,
     /// Values to which friction and cohesion fall while the joint slips, instead of cohesion that breaks at once; with the same values as the peak
-    /// the joint is perfectly plastic. Needs `shear_penalty_pa_m`, and no tension. Default: none.
+    /// the joint is perfectly plastic. Needs `shear_penalty_pa_m`. Default: none.
     #[serde(default)]
     pub residual: Option<Residual>,
     /// Roughness after Barton and Bandis: shear strength σ tan(φ_r + JRC log₁₀(JCS/σ)), `friction_deg` being the residual angle φ_r, and
@@ -173,6 +173,10 @@ pub struct Residual {
     /// Residual cohesion c_r [Pa]. Default: 0.
     #[serde(default)]
     pub cohesion_pa: f64,
+    /// What is left of the tensile strength where the joint has slipped and not opened [Pa]. With c/tan φ, at the peak and here, Mohr and Coulomb's line holds up to its apex, as
+    /// limit equilibrium assumes. Default: 0.
+    #[serde(default)]
+    pub tension_pa: f64,
     /// Slip over which strength falls linearly [m]. Default: 0, at once.
     #[serde(default)]
     pub over_m: f64,

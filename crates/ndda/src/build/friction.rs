@@ -38,7 +38,8 @@ fn strength(friction: &scene::Friction) -> Option<Box<dyn FrictionLaw>> {
         (None, _) => Box::new(VelocityCoulomb::new(friction_deg)),
         (Some(shear), Some(residual)) => {
             let (peak, after) = ((friction_deg, cohesion_pa), (residual.friction_deg, residual.cohesion_pa));
-            Box::new(SofteningCoulomb::new(shear, peak, after, residual.over_m))
+            let law = SofteningCoulomb::new(shear, peak, after, residual.over_m);
+            Box::new(law.with_tension(tension_pa, residual.tension_pa))
         }
         (Some(shear), None) if cohesion_pa > 0.0 || tension_pa > 0.0 => {
             Box::new(MohrCoulomb::new(friction_deg, shear, cohesion_pa, tension_pa))

@@ -1,5 +1,6 @@
 //! Changes of a trial to the scene.
 
+use ndda_io::read::LoadedScene;
 use ndda_io::scene::{Contact, Friction, Scene};
 use ndda_mesh::Vec3;
 use serde::{Deserialize, Serialize};
@@ -63,6 +64,7 @@ pub fn weaken(scene: &mut Scene, factor: f64) {
         if let Some(residual) = &mut friction.residual {
             residual.friction_deg = (residual.friction_deg.to_radians().tan() / factor).atan().to_degrees();
             residual.cohesion_pa /= factor;
+            residual.tension_pa /= factor;
         }
         // A joint then breaks at the same opening and slip.
         if let Some(fracture) = &mut friction.fracture {
@@ -100,6 +102,23 @@ pub fn has_springs(scene: &Scene) -> bool {
 pub fn has_cohesion(scene: &Scene) -> bool {
     let frictions = &mut scene.clone();
     self::frictions(frictions).iter().any(|friction| friction.cohesion_pa > 0.0 || friction.tension_pa > 0.0)
+}
+
+/// Whether some joint has cohesion that it keeps while it slips.
+pub fn keeps_cohesion(scene: &Scene) -> bool {
+    let keeps =
+        |friction: &&mut Friction| friction.residual.is_some_and(|residual| residual.cohesion_pa > 0.0);
+    frictions(&mut scene.clone()).iter().any(keeps)
+}
+
+/// Steps of a scene that leaves its step out over those of a run, in which vibrations of blocks at rest need not be resolved.
+const LONGER_STEPS: f64 = 4.0;
+
+/// The step of trials, where a run has one that was chosen for it: the longest that the bound of contact allows, which is three times the step that is unstable.
+pub fn lengthen_step(loaded: &mut LoadedScene) {
+    if loaded.chosen.iter().any(|choice| choice.path == "time.step_s") {
+        loaded.scene.time.step_s *= LONGER_STEPS;
+    }
 }
 
 /// Whether some joint has cohesion that it loses at once where it is exceeded.

@@ -9,40 +9,22 @@
 //! ```
 //!
 //! the half because facets of both sides carry bonds; f_n is the facet's contact force. The bond breaks for good when
-//! k_b δ > σ_t or |k_s s| > max(0, c + σ tan φ). Its shear is then handed to the friction law of the facet. Where the law has a fracture energy
+//! k_b δ > σ_t or |k_s s| > max(0, c + σ tan φ). Its shear is then handed to the friction law of the facet. Where the law says that slip leaves a tensile
+//! strength, a bond that is overloaded in shear slips instead: the point that it holds to follows the facet. Where the law has a fracture energy
 //! ([`Fracture`]), a facet has three bonds, each breaks gradually, and the facet's friction acts on the part of it that is broken. As shear is
 //! measured from where the bond formed, it does not depend on whether the joint was open or closed on the way. Both
 //! blocks feel f at the same place, so its torques balance, and its work is booked as that of friction.
 
-use ndda_mesh::geometry::triangle_area_vector;
 use ndda_mesh::{BlockId, BlockSet, Mat3, TetId, TriangleId, Vec3};
 
+use crate::friction::bonds_of_facet::{Key, broken_part, key};
 use crate::friction::fracture::Fracture;
-use crate::friction::law::{FacetSlip, FrictionLaw, ShearMemory, facet_basis};
-use crate::friction::law_table::{FrictionLawTable, Memory};
+use crate::friction::law::{FacetSlip, FrictionLaw, facet_basis};
+use crate::friction::law_table::FrictionLawTable;
+use crate::friction::stretch::{Stretch, frame_of};
 use crate::integration::integrals::Integrals;
-use crate::integration::tet_frame::TetFrame;
 use crate::model::{Bond, ContactHistory, ContactInput, ContactOutput, FacetContact, FacetMemory};
 use crate::pair_stiffness::PairStiffness;
-
-/// Offsets below this part of the coordinates are rounding.
-const ROUNDING: f64 = 8.0 * f64::EPSILON;
-
-/// Identifies a facet's contact: the triangle, the other block and, with memory per element, the element.
-type Key = (TriangleId, BlockId, Option<TetId>);
-
-/// Part of a facet's contact that no bond holds any more; none where there are no bonds.
-pub(crate) fn broken_part(bonds: &[Bond], blocks: &BlockSet, memory: Memory, wanted: Key) -> Option<f64> {
-    let first = bonds.partition_point(|bond| key(blocks, memory, bond) < wanted);
-    let own = bonds[first..].iter().take_while(|bond| key(blocks, memory, bond) == wanted);
-    let whole: f64 = own.map(|bond| (1.0 - bond.damage) * bond.part).sum();
-    (whole > 0.0).then_some(1.0 - whole)
-}
-
-fn key(blocks: &BlockSet, memory: Memory, bond: &Bond) -> Key {
-    let element = (memory == Memory::Element).then_some(bond.tet);
-    (bond.facet, blocks.tet_block[bond.tet.index()], element)
-}
 
 /// Drops the bonds that break, and hands their shear to the friction law of their facet. Gives the largest overload of those that
 /// break.
@@ -56,6 +38,7 @@ pub(crate) fn break_overloaded(
     let mut largest = 0.0f64;
     let (blocks, touching) = (input.blocks, integrals.touching());
     let mut bonds = std::mem::take(&mut history.bonds);
+    let mut opened = false;
     bonds.retain_mut(|bond| {
         let Some(law) = law(joints, blocks, bond) else { return false };
         if let Some(fracture) = law.fracture() {
@@ -68,21 +51,49 @@ pub(crate) fn break_overloaded(
             let element = wanted.2.map(|_| integrals.overlaps_of(touch)[0].tet);
             (touch.triangle, touch.target, element)
         });
-        let pressed_n =
-            place.map_or(0.0, |t| penalty_of_facet[t] * integrals.sums_of(&touching[t]).pressure.max(0.0));
-        let stretch = Stretch::of(input, bond);
-        let overload = stretch.overload(law, pressed_n, scratch);
-        if overload <= 0.0 {
+        let slips = law.tension_after_slip_pa(bond.slip_m).is_some();
+        if slips && bond.damage >= 1.0 {
             return true;
         }
-        largest = largest.max(overload);
-        if place.is_ok() {
-            hand_over(wanted, &stretch, law, input, history);
+        let pressed_n = place.map_or(0.0, |t| {
+            let sums = integrals.sums_of(&touching[t]);
+            penalty_of_facet[t] * if slips { bond.borne(&sums.weights) } else { sums.pressure.max(0.0) }
+        });
+        let mut stretch = Stretch::of(input, bond);
+        let tension_pa = match slips {
+            true => slip(bond, &mut stretch, law, (pressed_n, input), scratch),
+            false => Some(law.tension_pa()),
+        };
+        if let Some(tension_pa) = tension_pa {
+            let overload = stretch.overload(law, (pressed_n, tension_pa, bond.slip_m), scratch);
+            if overload <= 0.0 {
+                return true;
+            }
+            largest = largest.max(overload);
         }
-        false
+        if place.is_ok() {
+            hand_over(wanted, &stretch, (law, bond.slip_m), input, history);
+        }
+        if slips {
+            (bond.damage, opened) = (1.0, true);
+        }
+        slips
     });
+    if opened {
+        forget_opened(joints, blocks, &mut bonds);
+    }
     history.bonds = bonds;
     largest
+}
+
+/// Drops bonds that have opened beside others that held, where none of these is left.
+fn forget_opened(joints: &FrictionLawTable, blocks: &BlockSet, bonds: &mut Vec<Bond>) {
+    let is_left = |bond: &Bond| {
+        bond.damage < 1.0
+            || broken_part(bonds, blocks, joints.memory, key(blocks, joints.memory, bond)).is_some()
+    };
+    let left: Vec<Bond> = bonds.iter().filter(|bond| is_left(bond)).copied().collect();
+    *bonds = left;
 }
 
 /// Damages a bond by how far it is stretched. Gives its overload where it breaks at once.
@@ -94,11 +105,37 @@ fn damage(bond: &mut Bond, fracture: &Fracture, input: &ContactInput) -> f64 {
     if at_once { fracture.load(opening_m, slip_m) - 1.0 } else { 0.0 }
 }
 
+/// Lets a bond slip as far as its shear strength is exceeded. Gives its tensile strength [Pa]; none where slip has left none, or has gone as far as what the bond holds is wide.
+fn slip(
+    bond: &mut Bond,
+    stretch: &mut Stretch,
+    law: &dyn FrictionLaw,
+    (pressed_n, input): (f64, &ContactInput),
+    state: &mut Vec<f64>,
+) -> Option<f64> {
+    let trial_n = stretch.shear_n(law).norm();
+    let area_m2 = 2.0 * stretch.half_area;
+    let normal_n = pressed_n - stretch.tension_n(law);
+    let load = FacetSlip { normal_n, area_m2, mean_area_m2: area_m2, ..FacetSlip::default() };
+    let mut memory = stretch.memory((law, bond.slip_m), state);
+    memory.shear_n = [trial_n, 0.0];
+    law.advance(&load, &mut memory);
+    let (shear_n, slip_m) = (memory.shear_n[0], memory.state[0]);
+    if shear_n < trial_n {
+        stretch.offset_m *= shear_n / trial_n;
+        let anchor = stretch.center + stretch.opening_m * stretch.normal + stretch.offset_m;
+        bond.lambda = frame_of(bond.tet, input).lambda_at(&anchor);
+        bond.slip_m = slip_m;
+    }
+    let left = law.tension_after_slip_pa(bond.slip_m).filter(|left_pa| *left_pa > 0.0);
+    left.filter(|_| bond.slip_m.powi(2) < area_m2)
+}
+
 /// Makes the shear of a bond that breaks the friction that its facet remembers; the law then limits it.
 fn hand_over(
     (facet, target, element): Key,
     stretch: &Stretch,
-    law: &dyn FrictionLaw,
+    (law, slip_m): (&dyn FrictionLaw, f64),
     input: &ContactInput,
     history: &mut ContactHistory,
 ) {
@@ -116,11 +153,19 @@ fn hand_over(
     let found = history.facets.binary_search_by_key(&(facet, target, element), key);
     let place = found.unwrap_or_else(|place| place);
     match found {
+        // Beside bonds that hold, some of the facet may be left to friction already.
+        Ok(place) if law.tension_after_slip_pa(0.0).is_some() => {
+            let known = &mut history.facets[place].shear_n;
+            *known = [0, 1].map(|i| known[i] + memory.shear_n[i]);
+        }
         Ok(place) => history.facets[place] = memory,
         Err(place) => history.insert(place, memory),
     };
-    let state = history.state_of_mut(place);
-    law.begin(&mut state[..law.state_len()]);
+    let state = &mut history.state_of_mut(place)[..law.state_len()];
+    law.begin(state);
+    if slip_m > 0.0 {
+        state[0] = slip_m;
+    }
 }
 
 /// Force of an unbroken bond on its facet; its target feels the opposite.
@@ -197,93 +242,6 @@ fn law<'a>(joints: &'a FrictionLawTable, blocks: &BlockSet, bond: &Bond) -> Opti
     joints.law(blocks, bond.facet, blocks.tet_block[bond.tet.index()])
 }
 
-/// How a bond is deformed.
-struct Stretch {
-    /// The bonded point of the facet [m].
-    center: Vec3,
-    /// λ of that point in the target's tetrahedron.
-    lambda: [f64; 4],
-    /// Outward unit normal of the facet.
-    normal: Vec3,
-    /// Distance along it to the point that it is bonded to [m]; negative while pressed.
-    opening_m: f64,
-    /// Offset of that point across the normal [m].
-    offset_m: Vec3,
-    /// Half of the bonded area [m²].
-    half_area: f64,
-    /// Rounding of lengths [m].
-    rounding_m: f64,
-    /// Part of it that is not broken.
-    whole: f64,
-}
-
-impl Stretch {
-    fn of(input: &ContactInput, bond: &Bond) -> Self {
-        let corners = input.blocks.triangle_corners(bond.facet, input.position);
-        let tet = input.blocks.tet_corners(bond.tet, input.position);
-        let anchor: Vec3 = tet.iter().zip(bond.lambda).map(|(x, l)| l * x).sum();
-        let center = mean(&corners, &bond.weights);
-        let area_vector = triangle_area_vector(&corners);
-        let normal = area_vector.normalize();
-        let stretch = anchor - center;
-        let opening_m = stretch.dot(&normal);
-        let largest = corners.iter().chain(&tet).map(Vec3::amax).fold(0.0, f64::max);
-        Self {
-            center,
-            lambda: TetFrame::new(&tet).lambda_at(&center),
-            normal,
-            opening_m,
-            offset_m: stretch - opening_m * normal,
-            half_area: 0.5 * bond.share * area_vector.norm(),
-            rounding_m: ROUNDING * largest,
-            whole: 1.0 - bond.damage,
-        }
-    }
-
-    /// Opening and slip without what may be rounding [m].
-    fn beyond_rounding_m(&self) -> (f64, f64) {
-        (self.opening_m - self.rounding_m, (self.offset_m.norm() - self.rounding_m).max(0.0))
-    }
-
-    /// Its direction and how much more it gives along that while it is being damaged than what is whole of it [Pa/m]; damage that depends on the ratio of opening
-    /// to slip is taken as that of a constant ratio.
-    fn softening(&self, fracture: &Fracture, damage: f64) -> Option<(Vec3, f64)> {
-        let (opening_m, slip_m) = self.beyond_rounding_m();
-        let is_loaded = damage > 0.0 && fracture.damage(opening_m, slip_m) >= damage;
-        let direction = (self.opening_m.max(0.0) * self.normal + self.offset_m).try_normalize(0.0)?;
-        is_loaded.then(|| (direction, fracture.stiffness_pa_m * fracture.softening(opening_m, slip_m)))
-    }
-
-    /// Tension ½ S k_b max(δ, 0) of what is not broken [N].
-    fn tension_n(&self, law: &dyn FrictionLaw) -> f64 {
-        self.whole * law.bond_stiffness_pa_m() * self.half_area * self.opening_m.max(0.0)
-    }
-
-    /// Shear ½ S k_s s of what is not broken on the facet [N].
-    fn shear_n(&self, law: &dyn FrictionLaw) -> Vec3 {
-        self.whole * law.shear_stiffness_pa_m() * self.half_area * self.offset_m
-    }
-
-    /// By how much the joint's strength is exceeded, over its strength without normal stress; not above zero while it holds:
-    /// k_b δ ≤ σ_t and |k_s s| ≤ max(0, c + σ tan φ), to rounding.
-    fn overload(&self, law: &dyn FrictionLaw, pressed_n: f64, state: &mut Vec<f64>) -> f64 {
-        state.resize(law.state_len(), 0.0);
-        law.begin(state);
-        let whole = ShearMemory { broken: false, state, ..ShearMemory::default() };
-        let capacity_n = |normal_n: f64| {
-            let slip = FacetSlip { normal_n, area_m2: 2.0 * self.half_area, ..FacetSlip::default() };
-            law.capacity_n(&slip, &whole)
-        };
-        let tensile_pa = law.bond_stiffness_pa_m() * (self.opening_m - self.rounding_m);
-        let rounding_n = law.shear_stiffness_pa_m() * self.half_area * self.rounding_m;
-        let strength_n = capacity_n(pressed_n - self.tension_n(law)) + rounding_n;
-        let tensile_n = (tensile_pa - law.tension_pa()) * self.half_area;
-        let excess_n = tensile_n.max(self.shear_n(law).norm() - strength_n);
-        let unstressed_n = capacity_n(0.0).max(law.tension_pa() * self.half_area);
-        if unstressed_n > 0.0 { excess_n / unstressed_n } else { excess_n }
-    }
-}
-
 /// Adds what each bond does.
 pub(crate) fn add_facets(
     joints: &FrictionLawTable,
@@ -335,14 +293,6 @@ pub(crate) fn add_stiffness(
     }
 }
 
-pub(crate) fn frame_of(tet: TetId, input: &ContactInput) -> TetFrame {
-    TetFrame::new(&input.blocks.tet_corners(tet, input.position))
-}
-
-pub(crate) fn mean(corners: &[Vec3; 3], weights: &[f64; 3]) -> Vec3 {
-    corners.iter().zip(weights).map(|(x, weight)| *weight * x).sum()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -380,5 +330,43 @@ mod tests {
         assert!((energy / (0.5 * stiffness * gap * gap) - 1.0).abs() < 1e-6, "{energy}");
         assert_eq!(lifted(1.1 * tension / stiffness, &mut history), (Vec3::zeros(), 0.0));
         assert_eq!(lifted(gap, &mut history), (Vec3::zeros(), 0.0));
+    }
+
+    /// Pulled open by less than its strength, a joint slips at c − σ tan φ and holds on, also against the pull; beyond its tensile strength it opens.
+    #[test]
+    fn a_bond_that_slips_keeps_its_tensile_strength() {
+        let (stiffness, cohesion) = (1e9, 1e4);
+        let apex = cohesion / 30f64.to_radians().tan();
+        let law = crate::SofteningCoulomb::new(stiffness, (30.0, cohesion), (30.0, cohesion), 0.0);
+        let mut model = PotentialContact::new(1e9).with_friction(Box::new(law.with_tension(apex, apex)));
+        let lower = test_box([0.0; 3], [3.0, 3.0, 1.0], [3, 3, 1]);
+        let upper = test_box([1.0, 1.0, 1.0], [1.0, 1.0, 0.5], [1, 1, 1]);
+        let blocks = test_set(vec![lower, upper]);
+        let velocity = vec![Vec3::zeros(); blocks.rest_position.len()];
+        let mut history = ContactHistory::default();
+        let upper = blocks.nodes_of(BlockId(1));
+        let mut force = |moved_m: Vec3, history: &mut ContactHistory| -> Vec3 {
+            let mut position = blocks.rest_position.clone();
+            position[upper.clone()].iter_mut().for_each(|x| *x += moved_m);
+            let input = ContactInput::new(&blocks, &position, &velocity, 1e-3);
+            evaluate(&mut model, &input, history).force[upper.clone()].iter().sum()
+        };
+        force(Vec3::zeros(), &mut history);
+        let bonds = history.bonds.len();
+        // A square metre that bears half of what it can.
+        let gap = 0.5 * apex / stiffness;
+        for slip in [1e-4, 2e-4] {
+            let force = force(Vec3::new(slip, 0.0, gap), &mut history);
+            assert!((force.x / (-0.5 * cohesion) - 1.0).abs() < 1e-6, "{force:?}");
+            assert!((force.z / (-0.5 * apex) - 1.0).abs() < 1e-6, "{force:?}");
+        }
+        // Back by a tenth of what it was stretched by.
+        let back = 2e-4 - 0.1 * 0.5 * cohesion / stiffness;
+        let unloaded = force(Vec3::new(back, 0.0, gap), &mut history);
+        assert!((unloaded.x / (-0.45 * cohesion) - 1.0).abs() < 1e-6, "{unloaded:?}");
+        let slipped = 2e-4 - 0.5 * cohesion / stiffness;
+        assert!(history.bonds.iter().all(|bond| (bond.slip_m / slipped - 1.0).abs() < 1e-6));
+        assert_eq!(history.bonds.len(), bonds);
+        assert_eq!(force(Vec3::new(back, 0.0, 2.1 * gap), &mut history), Vec3::zeros());
     }
 }

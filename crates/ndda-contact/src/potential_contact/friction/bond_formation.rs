@@ -4,8 +4,8 @@ use ndda_mesh::geometry::triangle_area_vector;
 
 use crate::affine::convex_target::ConvexBlocks;
 use crate::broad_phase::candidates::{Candidates, Facet};
-use crate::friction::bond;
 use crate::friction::law_table::FrictionLawTable;
+use crate::friction::stretch;
 use crate::integration::clip::{Form, Outline, Polygon};
 use crate::model::{Bond, ContactInput};
 
@@ -27,12 +27,28 @@ pub(crate) fn form(
     for facet in facets {
         let Some(patch) = Patch::of(&facet, hulls, input) else { continue };
         let law = joints.law(input.blocks, facet.triangle, facet.target);
-        if law.is_some_and(|law| law.fracture().is_some()) {
-            bonds.extend(patch.points().into_iter().filter_map(|at| patch.bond(at, 1.0 / 3.0, input)));
+        if law.is_some_and(|law| law.fracture().is_some() || law.tension_after_slip_pa(0.0).is_some()) {
+            let points = patch.points();
+            let three = points.into_iter().zip(loads(&points));
+            bonds.extend(three.filter_map(|(at, bears)| patch.bond(at, (1.0 / 3.0, bears), input)));
         } else {
-            bonds.extend(patch.bond(patch.center, 1.0, input));
+            bonds.extend(patch.bond(patch.center, (1.0, [1.0; 3]), input));
         }
     }
+}
+
+/// The parts of a force on a facet that three of its points bear together, per corner of the facet that it acts at; equal parts where they lie in a line.
+fn loads(points: &[[f64; 2]; 3]) -> [[f64; 3]; 3] {
+    let area = |[a, b, c]: [[f64; 2]; 3]| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+    let all = area(*points);
+    let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
+    [0, 1, 2].map(|point| {
+        corners.map(|corner| {
+            let mut with = *points;
+            with[point] = corner;
+            if all.abs() > f64::MIN_POSITIVE { area(with) / all } else { 1.0 / 3.0 }
+        })
+    })
 }
 
 /// The area where a facet touches its target.
@@ -53,7 +69,7 @@ impl<'a> Patch<'a> {
         let normal = triangle_area_vector(&corners).normalize();
         let (mut share, mut moment, mut second) = (0.0, [0.0; 2], [0.0; 3]);
         for tet in facet.tets() {
-            let frame = bond::frame_of(tet, input);
+            let frame = stretch::frame_of(tet, input);
             let into = TOUCHING * frame.volume_m3.cbrt() * normal;
             let shifted = corners.map(|x| x + into);
             let mut polygon = Polygon::all_of(&Outline::TRIANGLE);
@@ -101,16 +117,26 @@ impl<'a> Patch<'a> {
         })
     }
 
-    /// A bond at a point, of a part of the area, with the element that the point is deepest in.
-    fn bond(&self, at: [f64; 2], part: f64, input: &ContactInput) -> Option<Bond> {
+    /// A bond at a point, of a part of the area and of the force, with the element that the point is deepest in.
+    fn bond(&self, at: [f64; 2], (part, bears): (f64, [f64; 3]), input: &ContactInput) -> Option<Bond> {
         let corners = input.blocks.triangle_corners(self.facet.triangle, input.position);
         let weights = [1.0 - at[0] - at[1], at[0], at[1]];
-        let point = bond::mean(&corners, &weights);
-        let lambda_in = |tet| (tet, bond::frame_of(tet, input).lambda_at(&point));
+        let point = stretch::mean(&corners, &weights);
+        let lambda_in = |tet| (tet, stretch::frame_of(tet, input).lambda_at(&point));
         let least = |lambda: &[f64; 4]| lambda.iter().copied().fold(f64::INFINITY, f64::min);
         let pairs = self.facet.tets().map(lambda_in);
         let deepest = pairs.max_by(|a, b| least(&a.1).total_cmp(&least(&b.1)));
         let (facet, share) = (self.facet.triangle, part * self.share);
-        deepest.map(|(tet, lambda)| Bond { facet, tet, weights, lambda, share, part, damage: 0.0 })
+        deepest.map(|(tet, lambda)| Bond {
+            facet,
+            tet,
+            weights,
+            lambda,
+            share,
+            part,
+            damage: 0.0,
+            slip_m: 0.0,
+            bears,
+        })
     }
 }

@@ -3,7 +3,7 @@
 use ndda_mesh::geometry::triangle_area_vector;
 use ndda_mesh::{BlockId, BlockSet, TetId, TriangleId, Vec3};
 
-use crate::friction::bond;
+use crate::friction::bonds_of_facet;
 use crate::friction::law::{FacetSlip, FrictionLaw, ShearMemory, capped, facet_basis, length};
 use crate::friction::law_table::{FrictionLawTable, Memory};
 use crate::integration::overlap_pair::{ActiveFacet, FacetMoments, OverlapPair};
@@ -120,16 +120,25 @@ impl FacetScene<'_> {
         let (mut memory, last_area_m2) = self.remembered(key, sums, (law, state));
         let bonds = &self.history.bonds;
         let bonded = !bonds.is_empty();
-        let broken =
-            bonded.then(|| bond::broken_part(bonds, self.input.blocks, joints.memory, key)).flatten();
-        if broken.is_some_and(|part| part == 0.0 || law.fracture().is_none()) {
+        let broken = bonded
+            .then(|| bonds_of_facet::broken_part(bonds, self.input.blocks, joints.memory, key))
+            .flatten();
+        let opens = law.tension_after_slip_pa(0.0).is_some();
+        if broken.is_some_and(|part| part == 0.0 || law.fracture().is_none() && !opens) {
             // The bond carries the shear.
             (force.sticks, force.memory) = (true, Some((memory.shear_n, false)));
             return;
         }
         let mut slip = self.slip(touch, (hits, sums), &basis, penalty_pa);
         slip.mean_area_m2 = 0.5 * (last_area_m2 + sums.area);
-        if let Some(part) = broken {
+        if broken.is_some() && opens {
+            let facet_m2 = triangle_area_vector(&corners).norm();
+            let touches = (&sums.weights, sums.area, facet_m2);
+            let [pressure, area_m2] =
+                bonds_of_facet::left_to_friction(bonds, (self.input.blocks, joints.memory, key), touches);
+            slip.normal_n = penalty_pa * pressure;
+            (slip.area_m2, slip.mean_area_m2) = (area_m2, area_m2);
+        } else if let Some(part) = broken {
             slip.normal_n *= part;
             slip.area_m2 *= part;
             slip.mean_area_m2 *= part;

@@ -92,6 +92,12 @@ pub trait FrictionLaw: Send + Sync {
         0.0
     }
 
+    /// Tension that a bond carries which has slipped by so much [m], where bonds slip without breaking ([Pa]); none where slip breaks a bond. A law with
+    /// such bonds keeps the plastic slip, and nothing else, as its own number.
+    fn tension_after_slip_pa(&self, _slip_m: f64) -> Option<f64> {
+        None
+    }
+
     /// Stiffness of a bond that carries tension [Pa/m].
     fn bond_stiffness_pa_m(&self) -> f64 {
         0.0

@@ -3,6 +3,7 @@
 pub(crate) mod barton_bandis;
 pub(crate) mod bond;
 pub(crate) mod bond_formation;
+pub(crate) mod bonds_of_facet;
 pub(crate) mod coulomb;
 pub(crate) mod dilating;
 pub(crate) mod facet;
@@ -15,6 +16,7 @@ pub(crate) mod openings;
 pub(crate) mod patches;
 pub(crate) mod softening_bond;
 pub(crate) mod softening_coulomb;
+pub(crate) mod stretch;
 pub mod testing;
 pub(crate) mod velocity_coulomb;
 

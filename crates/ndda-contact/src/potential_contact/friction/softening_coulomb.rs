@@ -10,13 +10,15 @@ use crate::friction::law::{FacetSlip, FrictionLaw, ShearMemory, capped, length};
 ///
 /// p is the plastic slip, what the joint has slid beyond the stretch of its spring. Where residual and peak are the same the joint is
 /// perfectly plastic. What touches when contact is first evaluated has its peak strength, and keeps it until it slips or opens; what comes
-/// into contact later has the residual one.
+/// into contact later has the residual one. Tensile strength falls likewise, and is gone for good where a joint opens.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SofteningCoulomb {
     shear_penalty_pa_m: f64,
     peak: Strength,
     residual: Strength,
     over_m: f64,
+    /// Tensile strength at the peak, and when it is residual [Pa].
+    tension_pa: [f64; 2],
 }
 
 /// Friction μ = tan φ and cohesion c [Pa].
@@ -41,12 +43,29 @@ impl SofteningCoulomb {
             friction: friction_deg.to_radians().tan(),
             cohesion_pa,
         };
-        Self { shear_penalty_pa_m, peak: strength(peak), residual: strength(residual), over_m }
+        Self {
+            shear_penalty_pa_m,
+            peak: strength(peak),
+            residual: strength(residual),
+            over_m,
+            tension_pa: [0.0; 2],
+        }
+    }
+
+    /// With a tensile strength at the peak, and what is left of it when the joint has slipped [Pa].
+    #[must_use]
+    pub fn with_tension(self, peak_pa: f64, residual_pa: f64) -> Self {
+        Self { tension_pa: [peak_pa, residual_pa], ..self }
     }
 
     /// Part of the way from peak to residual.
     fn softened(&self, memory: &ShearMemory) -> f64 {
-        if memory.broken || memory.state[0] >= self.over_m { 1.0 } else { memory.state[0] / self.over_m }
+        if memory.broken { 1.0 } else { self.softened_by(memory.state[0]) }
+    }
+
+    /// The same after a plastic slip [m].
+    fn softened_by(&self, slip_m: f64) -> f64 {
+        if slip_m >= self.over_m { 1.0 } else { slip_m / self.over_m }
     }
 
     /// Plastic slip in a step whose spring would bear `trial_n`: |f| − k Δp = τ(p + Δp) S, where k = ½ k_s S̄.
@@ -102,6 +121,17 @@ impl FrictionLaw for SofteningCoulomb {
         true
     }
 
+    fn tension_pa(&self) -> f64 {
+        self.tension_pa[0]
+    }
+
+    fn tension_after_slip_pa(&self, slip_m: f64) -> Option<f64> {
+        let [peak_pa, residual_pa] = self.tension_pa;
+        // What has not slipped is whole, also where strength falls at once.
+        let softened = if slip_m > 0.0 { self.softened_by(slip_m) } else { 0.0 };
+        (peak_pa > 0.0).then_some(peak_pa + softened * (residual_pa - peak_pa))
+    }
+
     /// As stiff in tension as in shear, so that what opens is broken.
     fn bond_stiffness_pa_m(&self) -> f64 {
         self.shear_penalty_pa_m
@@ -131,6 +161,19 @@ mod tests {
     #[test]
     fn it_keeps_the_contract_of_a_friction_law() {
         check_friction(&SofteningCoulomb::new(2e10, (35.0, 0.0), (20.0, 0.0), 1e-3));
+    }
+
+    #[test]
+    fn tension_falls_from_peak_to_residual_over_slip() {
+        let law = SofteningCoulomb::new(2e10, (35.0, 2e4), (30.0, 1e4), 4e-3);
+        assert_eq!(law.tension_after_slip_pa(0.0), None);
+        let law = law.with_tension(3e4, 1e4);
+        assert_eq!(
+            [0.0, 2e-3, 4e-3, 1.0].map(|p| law.tension_after_slip_pa(p).unwrap()),
+            [3e4, 2e4, 1e4, 1e4]
+        );
+        let at_once = SofteningCoulomb::new(2e10, (35.0, 2e4), (35.0, 2e4), 0.0).with_tension(3e4, 0.0);
+        assert_eq!([0.0, 1e-9].map(|p| at_once.tension_after_slip_pa(p).unwrap()), [3e4, 0.0]);
     }
 
     /// Work above that of residual friction: ½ σ (tan φ − tan φ_r) u_c, here 931.98 J/m² for 40° → 25° over 5 mm at 1 MPa.

@@ -3,7 +3,7 @@
 use ndda_mesh::{BlockId, Mat3, Vec3};
 
 use crate::affine::convex_target::ConvexBlocks;
-use crate::friction::bond;
+use crate::friction::bonds_of_facet;
 use crate::friction::facet::relative_velocity;
 use crate::friction::law::facet_basis;
 use crate::friction::law_table::{FrictionLawTable, Memory};
@@ -60,7 +60,7 @@ impl DampingScene<'_> {
         let by_element = joints.memory == Memory::Element;
         let element = by_element.then(|| self.integrals.overlaps_of(touch)[0].tet);
         let key = (touch.triangle, touch.target, element);
-        match bond::broken_part(bonds, self.input.blocks, joints.memory, key) {
+        match bonds_of_facet::broken_part(bonds, self.input.blocks, joints.memory, key) {
             Some(part) if law.fracture().is_some() => part * stiffness_n_m,
             Some(_) => 0.0,
             None => stiffness_n_m,

@@ -92,7 +92,7 @@ impl Check<'_> {
 
     fn residual(&mut self, path: &str, peak: &Friction, residual: &Residual) {
         let field = |name: &str| format!("{path}.{name}");
-        let Residual { friction_deg, cohesion_pa, over_m } = *residual;
+        let Residual { friction_deg, cohesion_pa, tension_pa, over_m } = *residual;
         if !(0.0..=peak.friction_deg).contains(&friction_deg) {
             let message = format!("{friction_deg}°: must be from 0 to the peak, {}°", peak.friction_deg);
             self.error(field("friction_deg"), message, "joints weaken when they slip");
@@ -100,6 +100,10 @@ impl Check<'_> {
         if !(0.0..=peak.cohesion_pa).contains(&cohesion_pa) {
             let message = format!("{cohesion_pa} Pa: must be from 0 to the peak, {} Pa", peak.cohesion_pa);
             self.error(field("cohesion_pa"), message, "joints weaken when they slip");
+        }
+        if !(0.0..=peak.tension_pa).contains(&tension_pa) {
+            let message = format!("{tension_pa} Pa: must be from 0 to the peak, {} Pa", peak.tension_pa);
+            self.error(field("tension_pa"), message, "joints weaken when they slip");
         }
         if !(over_m >= 0.0 && over_m.is_finite()) {
             self.error(
@@ -116,9 +120,9 @@ impl Check<'_> {
                 help,
             );
         }
-        if peak.tension_pa > 0.0 {
-            let help = "leave out tension_pa, or residual";
-            self.misfit(path.to_string(), "a joint that softens has no tensile strength", help);
+        if peak.tension_pa > 0.0 && peak.dilation.is_some() {
+            let help = "leave out tension_pa, or dilation";
+            self.misfit(path.to_string(), "a joint that opens by slip keeps no tensile strength", help);
         }
     }
 

@@ -1,0 +1,41 @@
+//! The bonds of one facet on one block, and what they leave to its friction.
+
+use ndda_mesh::{BlockId, BlockSet, TetId, TriangleId};
+
+use crate::friction::law_table::Memory;
+use crate::model::Bond;
+
+/// Identifies a facet's contact: the triangle, the other block and, with memory per element, the element.
+pub(crate) type Key = (TriangleId, BlockId, Option<TetId>);
+
+/// Part of a facet's contact that no bond holds any more; none where there are no bonds.
+pub(crate) fn broken_part(bonds: &[Bond], blocks: &BlockSet, memory: Memory, wanted: Key) -> Option<f64> {
+    let first = bonds.partition_point(|bond| key(blocks, memory, bond) < wanted);
+    let own = bonds[first..].iter().take_while(|bond| key(blocks, memory, bond) == wanted);
+    let whole: f64 = own.map(|bond| (1.0 - bond.damage) * bond.part).sum();
+    (whole > 0.0).then_some(1.0 - whole)
+}
+
+/// What bonds of a facet that have opened leave to its friction: their part of a force of these moments on its corners, and of the area what the others do not hold.
+pub(crate) fn left_to_friction(
+    bonds: &[Bond],
+    (blocks, memory, wanted): (&BlockSet, Memory, Key),
+    (weights, area_m2, facet_m2): (&[f64; 3], f64, f64),
+) -> [f64; 2] {
+    let first = bonds.partition_point(|bond| key(blocks, memory, bond) < wanted);
+    let own = bonds[first..].iter().take_while(|bond| key(blocks, memory, bond) == wanted);
+    let (mut pressure, mut free_m2) = (0.0, area_m2);
+    for bond in own {
+        if bond.damage < 1.0 {
+            free_m2 -= bond.share * facet_m2;
+        } else {
+            pressure += bond.borne(weights);
+        }
+    }
+    [pressure.max(0.0), free_m2.max(0.0)]
+}
+
+pub(crate) fn key(blocks: &BlockSet, memory: Memory, bond: &Bond) -> Key {
+    let element = (memory == Memory::Element).then_some(bond.tet);
+    (bond.facet, blocks.tet_block[bond.tet.index()], element)
+}
