@@ -10,6 +10,7 @@ mod film;
 mod free_blocks;
 mod kept;
 mod mechanism;
+mod opened;
 mod remarks;
 mod report;
 mod rest;
@@ -35,6 +36,7 @@ pub use changes::{By, Question};
 pub use failing::BlockVelocity;
 pub use free_blocks::Moved;
 pub use mechanism::{Kind, Mechanism, MovingBlock, Plane};
+pub use opened::Opened;
 pub use report::text;
 pub use trial::{State, Trial};
 

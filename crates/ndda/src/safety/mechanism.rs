@@ -7,6 +7,7 @@ use ndda_solver::Simulation;
 use serde::{Deserialize, Serialize};
 
 use super::free_blocks::{free, gone_m};
+use super::opened::Opened;
 use crate::Model;
 use crate::forecast::rim;
 use crate::run::motion;
@@ -119,6 +120,9 @@ pub struct Mechanism {
     /// Sides of the model that cut off blocks which move, beyond which their rock goes on in nature.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub cut_off_by: Vec<String>,
+    /// Cohesion that the joints of these blocks have lost because they opened in part. Left out where that does not matter.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub opened: Option<Opened>,
 }
 
 /// The blocks that move, the farthest first, and what they do together; `start` is where nodes were [m]. Steps on, to see what they touch.
@@ -147,7 +151,7 @@ pub fn of(model: &mut Model, start: &[Vec3]) -> (Option<Mechanism>, Vec<MovingBl
     let ways: Vec<(BlockId, Vec3)> = ways.collect();
     let sides = rim::cut_off(&model.loaded.scene, blocks, &ways);
     let cut_off_by = sides.into_iter().map(String::from).collect();
-    (Some(Mechanism { kind: moved[0].kind, words: words(&moved), cut_off_by }), moved)
+    (Some(Mechanism { kind: moved[0].kind, words: words(&moved), cut_off_by, opened: None }), moved)
 }
 
 /// Names of blocks and of surfaces.

@@ -1,6 +1,7 @@
 //! What is said beside the answer, read off its trials and its mechanism.
 
 use super::mechanism::Kind;
+use super::opened::Opened;
 use super::rest::STRONGEST;
 use super::slender::Slender;
 use super::{Bracket, By, Safety, State};
@@ -14,6 +15,7 @@ pub fn of(answer: &Safety, slender: Option<&Slender>, is_brittle: bool) -> Vec<S
     }
     remarks.extend(topples(answer, slender));
     remarks.extend(is_brittle.then(|| brittle(answer)));
+    remarks.extend(answer.mechanism.as_ref().and_then(|how| how.opened.as_ref()).map(opened));
     let Bracket { lower, upper } = answer.factor_of_safety;
     let cut_off = answer.mechanism.as_ref().map(|how| &how.cut_off_by).filter(|sides| !sides.is_empty());
     if let Some(sides) = cut_off {
@@ -116,6 +118,25 @@ fn brittle(answer: &Safety) -> String {
     )
 }
 
+/// Cohesion that is lost where joints open.
+fn opened(opened: &Opened) -> String {
+    let joints: Vec<String> = opened.joints.iter().map(|joint| format!("`{joint}`")).collect();
+    let (one, several) = (("joint", "has"), ("joints", "have"));
+    let (noun, verb) = if joints.len() == 1 { one } else { several };
+    format!(
+        "{noun} {} {verb} opened on {:.0} % of the area and lost cohesion there: formulas with c A everywhere give some {:.1} % more. {}",
+        joints.join(", "),
+        100.0 * opened.area_part,
+        100.0 * opened.lowers_by,
+        match opened.has_tension {
+            true =>
+                "Weight or water pulls there by more than the tensile strength, about which formulas say nothing",
+            false =>
+                "With `tension_pa` of c/tan φ, also in `residual`, joints bear tension as limit equilibrium assumes",
+        }
+    )
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -143,7 +164,12 @@ mod tests {
             error: 0.01,
             factor_of_safety: Bracket { lower, upper },
             not_standing,
-            mechanism: Some(Mechanism { kind: Kind::Sliding, words: String::new(), cut_off_by: Vec::new() }),
+            mechanism: Some(Mechanism {
+                kind: Kind::Sliding,
+                words: String::new(),
+                cut_off_by: Vec::new(),
+                opened: None,
+            }),
             moving_blocks: Vec::new(),
             trials: lower.map(trial).into_iter().collect(),
             remarks: Vec::new(),
@@ -173,6 +199,21 @@ mod tests {
         assert!(
             beside.len() == 1 && beside[0].contains("32 times as strong: the factor is that of the others"),
             "{beside:?}"
+        );
+    }
+
+    #[test]
+    fn cohesion_of_joints_that_open_is_told_with_what_it_lowers() {
+        let mut answer = answer(Some(1.179), Some(1.187), Vec::new());
+        let opened =
+            Opened { joints: vec!["b".into()], area_part: 0.12, lowers_by: 0.028, has_tension: false };
+        answer.mechanism.as_mut().expect("blocks fail").opened = Some(opened);
+        let remarks = of(&answer, None, false);
+        assert!(
+            remarks.len() == 1
+                && remarks[0].starts_with("joint `b` has opened on 12 %")
+                && remarks[0].contains("2.8 % more"),
+            "{remarks:?}"
         );
     }
 

@@ -1,5 +1,6 @@
 //! The bracket: the largest factor at which blocks stand, and the smallest at which they fail.
 
+mod failure;
 mod march;
 mod next;
 
@@ -17,7 +18,7 @@ use super::rest::{STRONGEST, choices, settled};
 use super::trial::{Course, Start, State, Trial};
 use super::{
     BlockVelocity, Bracket, By, Mechanism, MovingBlock, Plan, SCHEMA, Safety, SafetyError, Watch, changes,
-    film, mechanism, remarks, write,
+    remarks, write,
 };
 use crate::Model;
 use crate::forecast::held::nothing_loads;
@@ -79,6 +80,7 @@ impl<'a> Search<'a> {
         }
         let mut loaded = loaded.clone();
         loaded.scene = changes::at_rest(&loaded.scene);
+        changes::lengthen_step(&mut loaded);
         if nothing_loads(&loaded.scene) {
             return Err(SafetyError::NoLoads);
         }
@@ -143,8 +145,8 @@ impl<'a> Search<'a> {
         let before_s = self.answer.lock().expect("no trial panics").wall_s;
         let (mechanism, moving) = match self.none_stands() {
             true => (None, Vec::new()),
-            false if self.by.changes_loads() => self.mechanism(self.march(before_s)?)?,
-            false => self.mechanism(self.bisect(before_s)?)?,
+            false if self.by.changes_loads() => self.mechanism(&self.march(before_s)?)?,
+            false => self.mechanism(&self.bisect(before_s)?)?,
         };
         let (may_push, repeated) = (self.may_push(), self.repeated.load(Ordering::Relaxed));
         let (none_stands, as_drawn) = (self.none_stands(), self.as_drawn());
@@ -351,29 +353,6 @@ impl<'a> Search<'a> {
         let settle_tolerance = (leans || changes::has_springs_only(&self.loaded.scene)).then_some(tolerance);
         let has_cohesion = changes::has_cohesion(&self.loaded.scene);
         Course { start, settle_tolerance, leans, has_cohesion, error, failing, stop, is_settled }
-    }
-
-    /// How blocks fail at the upper end of the bracket: that trial once more, with its contacts.
-    fn mechanism(&self, from: Snapshot) -> Result<(Option<Mechanism>, Vec<MovingBlock>), SafetyError> {
-        let upper = self.answer.lock().expect("no trial panics").factor_of_safety.upper;
-        let Some(factor) = upper else { return Ok((None, Vec::new())) };
-        if let Some((at, how, moving)) = &self.known_mechanism
-            && *at == factor
-        {
-            return Ok((Some(how.clone()), moving.clone()));
-        }
-        let mut model = self.model(factor, &from)?;
-        model.simulation.watch_contacts(true);
-        let failing = self.failing();
-        let trial = self
-            .course(&failing, &|| false)
-            .run(&mut model.simulation, factor)
-            .ok_or(SafetyError::Interrupted)?;
-        let found = mechanism::of(&mut model, &self.start.position);
-        if let Some(out) = self.watch.out {
-            film::record(self.model(factor, &from)?, &trial, out, self.watch.stop)?;
-        }
-        Ok(found)
     }
 }
 
