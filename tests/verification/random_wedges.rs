@@ -1,7 +1,8 @@
-//! Factors of safety of random wedges, dry and with water, against limit equilibrium.
+//! Factors of safety of random wedges, dry, with water, with cohesion and sliding on one plane, against limit equilibrium.
 
 use ndda::safety::{Kind, Question, Safety};
 use ndda_mesh::geometry::{tet_volume, triangle_area_vector};
+use ndda_mesh::{Mat3, Vec3};
 use ndda_solver::BodyKind;
 
 use crate::evidence::Answer::AtMost;
@@ -65,39 +66,73 @@ fn random_wedges_have_the_factors_of_limit_equilibrium() {
     );
 }
 
-/// The block above both joints: its weight [N], and the areas of its faces on joint `a` and on joint `b` [m²].
-fn measures(text: &str) -> (f64, [f64; 2]) {
+/// A named joint of the block above both: its area [m²] and its triangles.
+struct Face {
+    area_m2: f64,
+    triangles: Vec<[Vec3; 3]>,
+}
+
+impl Face {
+    fn center(&self) -> Vec3 {
+        let of = |t: &[Vec3; 3]| triangle_area_vector(t).norm() * (t[0] + t[1] + t[2]) / 3.0;
+        self.triangles.iter().map(of).sum::<Vec3>() / self.area_m2
+    }
+
+    /// Pressures at its corners where a weight presses it by its part along a normal [N] at a point above it, and water [Pa] from below, and it stays plane: linear
+    /// ones with that force and its moments.
+    fn pressures(&self, normal: Vec3, (pressed_n, point): (f64, Vec3), water_pa: f64) -> Vec<f64> {
+        // Linear in the horizontal distances from the line of the weight.
+        let terms = |x: Vec3| Vec3::new(1.0, x.x - point.x, x.y - point.y);
+        let middles = |[a, b, c]: &[Vec3; 3]| [0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)];
+        let (mut sums, mut water) = (Mat3::zeros(), Vec3::zeros());
+        for triangle in &self.triangles {
+            assert!((triangle_area_vector(triangle).normalize().dot(&normal).abs() - 1.0).abs() < 1e-9);
+            let third_m2 = triangle_area_vector(triangle).norm() / 3.0;
+            for middle in middles(triangle).map(terms) {
+                sums += third_m2 * middle * middle.transpose();
+                water += third_m2 * water_pa * middle;
+            }
+        }
+        let slopes = sums.try_inverse().expect("a face has an area") * (pressed_n * Vec3::x() - water);
+        self.triangles.iter().flatten().map(|corner| slopes.dot(&terms(*corner))).collect()
+    }
+}
+
+/// The block above both joints: its weight [N], its mass centre [m], and its faces on joint `a` and on joint `b`.
+fn measures(text: &str) -> (f64, Vec3, [Face; 2]) {
     let simulation = simulation(text);
     let blocks = simulation.blocks();
     let free =
         blocks.ids().find(|&block| simulation.shape(block).kind != BodyKind::Fixed).expect("a free block");
     let x = &blocks.rest_position;
-    let volume_m3: f64 =
-        blocks.tets_of(free).map(|tet| tet_volume(&blocks.tets[tet].map(|n| x[n.index()]))).sum();
-    let area_m2 = |name: &str| {
+    let corners = |tet: usize| blocks.tets[tet].map(|n| x[n.index()]);
+    let volume_m3: f64 = blocks.tets_of(free).map(|tet| tet_volume(&corners(tet))).sum();
+    let center = |tet: usize| 0.25 * corners(tet).iter().sum::<Vec3>();
+    let moment: Vec3 = blocks.tets_of(free).map(|tet| tet_volume(&corners(tet)) * center(tet)).sum();
+    let face = |name: &str| {
         let on_joint = |(triangle, surface): &(&[ndda_mesh::NodeId; 3], &Option<u32>)| {
             let is_named = surface.is_some_and(|surface| blocks.surface_names[surface as usize] == name);
             is_named && blocks.block_of(triangle[0]) == free
         };
         let triangles = blocks.triangles.iter().zip(&blocks.triangle_surface).filter(on_joint);
-        triangles.map(|(t, _)| triangle_area_vector(&t.map(|n| x[n.index()])).norm()).sum::<f64>()
+        let triangles: Vec<[Vec3; 3]> = triangles.map(|(t, _)| t.map(|n| x[n.index()])).collect();
+        Face { area_m2: triangles.iter().map(|t| triangle_area_vector(t).norm()).sum(), triangles }
     };
-    (DENSITY_KG_M3 * GRAVITY_M_S2 * volume_m3, [area_m2("a"), area_m2("b")])
+    (DENSITY_KG_M3 * GRAVITY_M_S2 * volume_m3, moment / volume_m3, [face("a"), face("b")])
 }
 
 /// Normal forces on both planes of a dry wedge over its weight, and the pull along their line.
 fn pushes([a, b]: [(f64, f64); 2]) -> ([f64; 2], f64) {
     let (n_a, n_b) = (normal(a.0, a.1), normal(b.0, b.1));
     let line = n_a.cross(&n_b).normalize();
-    let weight = -ndda_mesh::Vec3::z();
+    let weight = -Vec3::z();
     let across = weight - weight.dot(&line) * line;
     let (cos, p_a, p_b) = (n_a.dot(&n_b), -across.dot(&n_a), -across.dot(&n_b));
     let of = |p: f64, q: f64| (p - cos * q) / (1.0 - cos * cos);
     ([of(p_a, p_b), of(p_b, p_a)], weight.dot(&line).abs())
 }
 
-/// F = Σ (N − p A) tan φ/(W sin ψ), with water that presses both sides of each joint by a part of what the weight does. Not with cohesion: the weight of these blocks presses
-/// their joints so unevenly that some open in part, and c A everywhere would be too much.
+/// F = Σ (N − p A) tan φ/(W sin ψ), with water that presses both sides of each joint by a part of what the weight does.
 #[test]
 fn random_wedges_with_water_have_the_factors_of_limit_equilibrium() {
     let wanted = wanted(2);
@@ -114,7 +149,8 @@ fn random_wedges_with_water_have_the_factors_of_limit_equilibrium() {
             continue;
         }
         let dry = wedge(planes, friction_deg);
-        let (weight_n, areas) = measures(&dry);
+        let (weight_n, _, faces) = measures(&dry);
+        let areas = faces.map(|face| face.area_m2);
         // Up to a quarter of each normal force.
         let water_pa = [0, 1].map(|k| 0.25 * wet[k] * parts[k] * weight_n / areas[k]);
         let pressed_n: f64 = (0..2).map(|k| parts[k] * weight_n - water_pa[k] * areas[k]).sum();
@@ -123,11 +159,7 @@ fn random_wedges_with_water_have_the_factors_of_limit_equilibrium() {
             continue;
         }
         done += 1;
-        let water = |name: &str, pressure_pa: f64| {
-            format!("(on: Joint(\"{name}\"), pressure: Linear(pressure_pa: {pressure_pa})), ")
-        };
-        let water = format!("water: [{}{}], contact:", water("a", water_pa[0]), water("b", water_pa[1]));
-        let safety = found(&dry.replace("contact:", &water), Question::Strength);
+        let safety = found(&dry.replace("contact:", &water(water_pa)), Question::Strength);
         let (lower, upper) = bracket(&safety);
         println!(
             "{planes:.2?} φ = {friction_deg:.2}°, p = {water_pa:.0?} Pa: {lower:.4} to {upper:.4}, exact {exact:.4}, {:?}",
@@ -142,4 +174,174 @@ fn random_wedges_with_water_have_the_factors_of_limit_equilibrium() {
         worst,
         AtMost(ERROR),
     );
+}
+
+/// The water of both joints, before the contact of a scene.
+fn water(pressure_pa: [f64; 2]) -> String {
+    let [a, b] = pressure_pa;
+    let of = |name: &str, pa: f64| format!("(on: Joint(\"{name}\"), pressure: Linear(pressure_pa: {pa})), ");
+    format!("water: [{}{}], contact:", of("a", a), of("b", b))
+}
+
+/// The contact of a scene whose joints have these friction angles [°], cohesions and tensile strengths [Pa], all of which they keep.
+fn contact(joints: [(f64, f64, f64); 2]) -> String {
+    let law = |name: &str, (friction_deg, cohesion_pa, tension_pa): (f64, f64, f64)| {
+        let strength =
+            format!("friction_deg: {friction_deg}, cohesion_pa: {cohesion_pa}, tension_pa: {tension_pa}");
+        format!(
+            "(joint: \"{name}\", friction: (shear_penalty_pa_m: 1e9, {strength}, residual: ({strength}))), "
+        )
+    };
+    let [a, b] = joints;
+    format!(
+        "contact: Potential(penalty_pa: 2e9, potential: Smooth(), rock_joints: [{}{}]))",
+        law("a", a),
+        law("b", b)
+    )
+}
+
+/// F = Σ (c A + (N − p A) tan φ)/(W sin ψ). Limit equilibrium knows no moments: Mohr and Coulomb's line has to hold up to its apex, where joints are pulled by what their weight
+/// presses unevenly.
+#[test]
+fn random_wedges_with_cohesion_and_water_have_the_factors_of_limit_equilibrium() {
+    let wanted = wanted(3);
+    let (mut state, mut done, mut pulled, mut worst) = (13, 0, 0, 0.0f64);
+    while done < wanted {
+        let mut random = || random(&mut state);
+        let mut plane = || (30.0 + 40.0 * random(), 360.0 * random());
+        let planes = [plane(), plane()];
+        let friction_deg = [0; 2].map(|_| 20.0 + 25.0 * random());
+        let (held, wet) = ([0; 2].map(|_| random()), [0; 2].map(|_| random()));
+        let line = normal(planes[0].0, planes[0].1).cross(&normal(planes[1].0, planes[1].1));
+        let plunge_deg = (line.z.abs() / line.norm()).asin().to_degrees();
+        let (parts, pull) = pushes(planes);
+        if line.norm() < 0.3 || plunge_deg < 15.0 || parts.iter().any(|part| *part < 0.1) {
+            continue;
+        }
+        let dry = wedge(planes, friction_deg[0]);
+        let (weight_n, _, faces) = measures(&dry);
+        let mean_pa = [0, 1].map(|k| parts[k] * weight_n / faces[k].area_m2);
+        // Cohesion up to half of the mean pressure of the weight, water up to a quarter of it.
+        let cohesion_pa = [0, 1].map(|k| 0.5 * held[k] * mean_pa[k]);
+        let water_pa = [0, 1].map(|k| 0.25 * wet[k] * mean_pa[k]);
+        let tan = friction_deg.map(|deg| deg.to_radians().tan());
+        let held_n: f64 =
+            (0..2).map(|k| (cohesion_pa[k] + (mean_pa[k] - water_pa[k]) * tan[k]) * faces[k].area_m2).sum();
+        let exact = held_n / (weight_n * pull);
+        if !(0.6..6.0).contains(&exact) {
+            continue;
+        }
+        done += 1;
+        let laws = [0, 1].map(|k| (friction_deg[k], cohesion_pa[k], cohesion_pa[k] / tan[k]));
+        let (before, _) = dry.split_once("contact:").expect("contact");
+        let text = format!("{before}{}", contact(laws)).replace("contact:", &water(water_pa));
+        let safety = found(&text, Question::Strength);
+        let (lower, upper) = bracket(&safety);
+        println!(
+            "{planes:.2?} φ = {friction_deg:.2?}°, c = {cohesion_pa:.0?} Pa, p = {water_pa:.0?} Pa: {lower:.4} to {upper:.4}, exact {exact:.4}, {:?}",
+            kind(&safety)
+        );
+        assert_eq!(kind(&safety), Kind::Wedge, "{planes:?}");
+        let opened = safety.mechanism.as_ref().and_then(|how| how.opened.as_ref());
+        if let Some(opened) = opened.filter(|opened| opened.lowers_by > ERROR) {
+            // Such a wedge would topple if it could bear no more than that tension.
+            println!("pulled by more than c/tan φ on {:.0} % of its joints", 100.0 * opened.area_part);
+            assert!(upper < exact, "{upper} and {exact}");
+            pulled += 1;
+            done -= 1;
+            continue;
+        }
+        worst = worst.max(off(&safety, exact));
+    }
+    assert!(4 * pulled <= wanted, "{pulled} of {wanted} are pulled apart");
+    row(
+        "safety",
+        &format!(
+            "{wanted} random wedges with cohesion and water: limit equilibrium outside of the bracket by [-]"
+        ),
+        worst,
+        AtMost(ERROR),
+    );
+}
+
+/// F = (c A + (W cos α − p A) tan φ)/(W sin α) of a block that the weight lifts off one of its planes. Limit equilibrium knows no moments. The weight must not topple it, or pull
+/// the joint open where that has cohesion. What cohesion and water do at the centre of the face must not turn it in its plane, against the other joint, which has no tensile strength,
+/// or it would hold.
+#[test]
+fn random_wedges_that_slide_on_one_plane_have_the_factors_of_limit_equilibrium() {
+    let wanted = wanted(3);
+    let (mut state, mut done, mut worst) = (17, 0, 0.0f64);
+    while done < wanted {
+        let mut random = || random(&mut state);
+        let mut plane = || (30.0 + 40.0 * random(), 360.0 * random());
+        let planes = [plane(), plane()];
+        let friction_deg = [0; 2].map(|_| 20.0 + 25.0 * random());
+        let line = normal(planes[0].0, planes[0].1).cross(&normal(planes[1].0, planes[1].1));
+        let (parts, _) = pushes(planes);
+        if line.norm() < 0.3 || parts.iter().all(|part| *part > -0.05) {
+            continue;
+        }
+        let on = usize::from(parts[1] > parts[0]);
+        let dry = wedge(planes, friction_deg[on]);
+        let (weight_n, center, faces) = measures(&dry);
+        let (face, n) = (&faces[on], normal(planes[on].0, planes[on].1));
+        let ((sine, cosine), tan) =
+            (planes[on].0.to_radians().sin_cos(), friction_deg[on].to_radians().tan());
+        let (size_m, mean_pa) = (face.area_m2.sqrt(), weight_n * cosine / face.area_m2);
+        let beside_m = (face.center() - center).dot(&strike(planes[on].1));
+        // Each second block has friction alone, which acts on velocities. The others have cohesion up to half of the mean pressure of the weight, water up to a quarter of it.
+        let holds = done % 2 == 1;
+        let draws = (0..if holds { 200 } else { 1 }).map(|_| match holds {
+            true => (0.5 * random() * mean_pa, 0.25 * random() * mean_pa),
+            false => (0.0, 0.0),
+        });
+        let mut draws = draws.filter(|(cohesion_pa, water_pa)| {
+            let held_pa = cohesion_pa + (mean_pa - water_pa) * tan;
+            let turns_m = (cohesion_pa - water_pa * tan) / held_pa * beside_m;
+            // Half of the tensile strength, which is reduced with the rest.
+            let least_pa = if holds { -0.5 * cohesion_pa / tan } else { -0.5 * mean_pa };
+            let pressed = face.pressures(n, (mean_pa * face.area_m2, center), *water_pa);
+            turns_m.abs() < STRAIGHT * size_m && pressed.iter().all(|pressure| *pressure > least_pa)
+        });
+        let Some((cohesion_pa, water_pa)) = draws.next() else { continue };
+        let exact = (cohesion_pa + (mean_pa - water_pa) * tan) * face.area_m2 / (weight_n * sine);
+        if !(0.6..6.0).contains(&exact) {
+            continue;
+        }
+        done += 1;
+        let mut laws = friction_deg.map(|deg| (deg, 0.0, 0.0));
+        laws[on] = (friction_deg[on], cohesion_pa, cohesion_pa / tan);
+        let mut on_both = [0.0; 2];
+        on_both[on] = water_pa;
+        let (before, _) = dry.split_once("contact:").expect("contact");
+        let wet = || format!("{before}{}", contact(laws)).replace("contact:", &water(on_both));
+        let safety = found(&if holds { wet() } else { dry.clone() }, Question::Strength);
+        let (lower, upper) = bracket(&safety);
+        let joints: Vec<&str> =
+            safety.moving_blocks[0].planes.iter().filter_map(|plane| plane.joint.as_deref()).collect();
+        println!(
+            "{planes:.2?} on {on}: φ = {:.2}°, c = {cohesion_pa:.0} Pa, p = {water_pa:.0} Pa: {lower:.4} to {upper:.4}, exact {exact:.4}, {:?} on {joints:?}",
+            friction_deg[on],
+            kind(&safety)
+        );
+        assert_eq!((kind(&safety), joints), (Kind::Sliding, vec![["a", "b"][on]]), "{planes:?}");
+        worst = worst.max(off(&safety, exact));
+    }
+    row(
+        "safety",
+        &format!(
+            "{wanted} random wedges that slide on one plane: limit equilibrium outside of the bracket by [-]"
+        ),
+        worst,
+        AtMost(ERROR),
+    );
+}
+
+/// How far beside the line of the weight friction and cohesion act at most, over the size of the face.
+const STRAIGHT: f64 = 3e-3;
+
+/// The level direction in a plane.
+fn strike(direction_deg: f64) -> Vec3 {
+    let (sine, cosine) = direction_deg.to_radians().sin_cos();
+    Vec3::new(cosine, -sine, 0.0)
 }

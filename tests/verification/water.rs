@@ -220,4 +220,22 @@ fn a_wedge_with_cohesion_has_the_factors_of_hoek_and_bray_dry_and_wet() {
         lower,
         AtLeast(0.96 * wedge(mean_pa)),
     );
+    let opened = safety.mechanism.as_ref().and_then(|how| how.opened.clone()).expect("a joint opens");
+    assert!(opened.joints.contains(&"b".to_string()), "{opened:?}");
+    let told = lower * (1.0 + opened.lowers_by);
+    row("water", "the same with what it has lost, as the note says [-]", told, Within(wedge(mean_pa), 0.02));
+    // Joints that bear tension up to the apex of their strength do as the formula says.
+    let safety = found(&up_to_the_apex(&text.replace("factor: 0.5", "factor: 1")), Question::Strength);
+    holds("wedge 45/105, 70/235 with all of its water and c/tan φ", &safety, wedge(mean_pa));
+    assert_eq!(kind(&safety), Kind::Wedge);
+    assert!(safety.mechanism.is_some_and(|how| how.opened.is_none()));
+}
+
+/// The scene with a tensile strength of c/tan φ of both joints, which they keep.
+fn up_to_the_apex(text: &str) -> String {
+    [(20.0, 24.0), (30.0, 48.0)].into_iter().fold(text.to_string(), |text, (friction_deg, cohesion_kpa)| {
+        let strength = format!("friction_deg: {friction_deg}, cohesion_pa: {cohesion_kpa}e3");
+        let tension_pa = 1e3 * cohesion_kpa / f64::to_radians(friction_deg).tan();
+        text.replace(&strength, &format!("{strength}, tension_pa: {tension_pa}"))
+    })
 }
