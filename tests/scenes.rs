@@ -16,7 +16,7 @@ use ndda_io::{OutputFolder, read};
 use serde_json::Value;
 
 /// Row of the manual, scene, largest `error_end` and largest `error_max` that its header allows: each bound is a promise of a scene.
-const CRITERIA: [(&str, &str, f64, f64); 18] = [
+const CRITERIA: [(&str, &str, f64, f64); 22] = [
     ("free fall", "collision_equal", 1e-3, f64::INFINITY),
     ("free fall", "collision_equal_free", 2e-4, f64::INFINITY),
     ("free fall", "collision_unequal", 1e-3, f64::INFINITY),
@@ -33,6 +33,10 @@ const CRITERIA: [(&str, &str, f64, f64); 18] = [
     ("bar on a wall", "studies/base/bar_impact", 2e-2, 3e-2),
     ("bending", "studies/base/cantilever", 0.2, 0.2),
     ("stack", "studies/base/stack", 1e-2, 1e-2),
+    ("Newton's cradle", "studies/base/cradle", 1e-3, 1e-3),
+    ("bars that collide", "studies/base/bars", 1e-2, 1e-2),
+    ("torsional friction", "studies/base/twist", 5e-3, 5e-3),
+    ("sliding in space", "studies/base/shaken", 1e-3, 1e-3),
     ("collisions", "tunnel_roof_wedge", 1e-12, 1e-12),
     ("wedge", "wedge_two_planes", 1e-2, 1e-2),
 ];

@@ -1,6 +1,7 @@
 //! Runs against closed forms and against each other: one file per case.
 
 mod bar_under_traction;
+mod bars_that_collide;
 mod bedded_bar;
 mod blast;
 mod block_on_a_slope;
@@ -20,6 +21,7 @@ mod contact_damping;
 mod contact_fields;
 mod contact_patch;
 mod conveyor;
+mod cradle;
 mod damping;
 mod damping_beyond_the_step;
 mod dilation;
@@ -67,6 +69,7 @@ mod safety_factor;
 mod settling;
 mod shaken_base;
 mod shaking;
+mod sliding_in_space;
 mod sliding_over_element_borders;
 mod spring_creep;
 mod springs_and_elimination;
@@ -76,6 +79,7 @@ mod sticking_plate;
 mod sudden_load;
 mod tall_stack;
 mod toppling_slope;
+mod torsional_friction;
 mod travel;
 mod water;
 

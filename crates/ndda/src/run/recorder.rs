@@ -113,6 +113,8 @@ impl Recorder {
         (held, extras): (Vec<(BlockId, String)>, Extras),
         saved: Option<SavedRecorder>,
     ) -> Result<Self, WriteError> {
+        // A scene that does not come to rest is not compared with the closed form that it names.
+        let extras = Extras { reference: comparison.is_some(), ..extras };
         let names = monitors.iter().map(|monitor| monitor.name.as_str());
         let columns = columns(names, &held, extras);
         let history = match (file, &saved) {
