@@ -9,6 +9,7 @@ mod body_kinds;
 mod bolts;
 mod bolts_in_stages;
 mod bonded_bar;
+mod bonded_bending;
 mod bonded_plate;
 mod bonded_rock;
 mod bonds_beside_friction;

@@ -17,7 +17,7 @@
 
 use ndda_mesh::{BlockId, BlockSet, Mat3, TetId, TriangleId, Vec3};
 
-use crate::friction::bonds_of_facet::{Key, broken_part, key};
+use crate::friction::bonds_of_facet::{self, Key, key};
 use crate::friction::fracture::Fracture;
 use crate::friction::law::{FacetSlip, FrictionLaw, facet_basis};
 use crate::friction::law_table::FrictionLawTable;
@@ -26,8 +26,8 @@ use crate::integration::integrals::Integrals;
 use crate::model::{Bond, ContactHistory, ContactInput, ContactOutput, FacetContact, FacetMemory};
 use crate::pair_stiffness::PairStiffness;
 
-/// Drops the bonds that break, and hands their shear to the friction law of their facet. Gives the largest overload of those that
-/// break.
+/// Opens the bonds that break, and hands their shear to the friction law of their facet; drops those of a facet that are all open. Gives the largest
+/// overload of those that break.
 pub(crate) fn break_overloaded(
     joints: &FrictionLawTable,
     integrals: &Integrals,
@@ -39,61 +39,59 @@ pub(crate) fn break_overloaded(
     let (blocks, touching) = (input.blocks, integrals.touching());
     let mut bonds = std::mem::take(&mut history.bonds);
     let mut opened = false;
-    bonds.retain_mut(|bond| {
-        let Some(law) = law(joints, blocks, bond) else { return false };
-        if let Some(fracture) = law.fracture() {
+    for place in 0..bonds.len() {
+        let bond = &mut bonds[place];
+        if bond.damage >= 1.0 {
+            continue;
+        }
+        let law = law(joints, blocks, bond);
+        if let Some(fracture) = law.and_then(|law| law.fracture()) {
             largest = largest.max(damage(bond, fracture, input));
-            return bond.damage < 1.0;
+            opened |= bond.damage >= 1.0;
+            continue;
         }
         let wanted = key(blocks, joints.memory, bond);
-        let place = touching.binary_search_by_key(&wanted, |touch| {
+        let touch = touching.binary_search_by_key(&wanted, |touch| {
             // With memory per element, all hits of a facet are in one.
             let element = wanted.2.map(|_| integrals.overlaps_of(touch)[0].tet);
             (touch.triangle, touch.target, element)
         });
-        let slips = law.tension_after_slip_pa(bond.slip_m).is_some();
-        if slips && bond.damage >= 1.0 {
-            return true;
+        let pressed_n =
+            touch.map_or(0.0, |t| penalty_of_facet[t] * bond.borne(&integrals.sums_of(&touching[t]).weights));
+        let Some(overload) = overload(bond, law, (pressed_n, input), scratch) else { continue };
+        largest = largest.max(overload);
+        let slip_m = bond.slip_m;
+        let stretch = Stretch::of(input, bond);
+        bond.damage = 1.0;
+        opened = true;
+        if let (Some(law), true) = (law, touch.is_ok()) {
+            let is_first = bonds_of_facet::opened(&bonds, (blocks, joints.memory, wanted)) == 1;
+            hand_over(wanted, &stretch, (law, slip_m, is_first), input, history);
         }
-        let pressed_n = place.map_or(0.0, |t| {
-            let sums = integrals.sums_of(&touching[t]);
-            penalty_of_facet[t] * if slips { bond.borne(&sums.weights) } else { sums.pressure.max(0.0) }
-        });
-        let mut stretch = Stretch::of(input, bond);
-        let tension_pa = match slips {
-            true => slip(bond, &mut stretch, law, (pressed_n, input), scratch),
-            false => Some(law.tension_pa()),
-        };
-        if let Some(tension_pa) = tension_pa {
-            let overload = stretch.overload(law, (pressed_n, tension_pa, bond.slip_m), scratch);
-            if overload <= 0.0 {
-                return true;
-            }
-            largest = largest.max(overload);
-        }
-        if place.is_ok() {
-            hand_over(wanted, &stretch, (law, bond.slip_m), input, history);
-        }
-        if slips {
-            (bond.damage, opened) = (1.0, true);
-        }
-        slips
-    });
+    }
     if opened {
-        forget_opened(joints, blocks, &mut bonds);
+        bonds_of_facet::forget_opened(&mut bonds, blocks, joints.memory);
     }
     history.bonds = bonds;
     largest
 }
 
-/// Drops bonds that have opened beside others that held, where none of these is left.
-fn forget_opened(joints: &FrictionLawTable, blocks: &BlockSet, bonds: &mut Vec<Bond>) {
-    let is_left = |bond: &Bond| {
-        bond.damage < 1.0
-            || broken_part(bonds, blocks, joints.memory, key(blocks, joints.memory, bond)).is_some()
+/// By how much a bond is overloaded that breaks; none where it holds. Where its law says that slip leaves a tensile strength, it slips first.
+fn overload(
+    bond: &mut Bond,
+    law: Option<&dyn FrictionLaw>,
+    (pressed_n, input): (f64, &ContactInput),
+    scratch: &mut Vec<f64>,
+) -> Option<f64> {
+    let Some(law) = law else { return Some(0.0) };
+    let mut stretch = Stretch::of(input, bond);
+    let tension_pa = match law.tension_after_slip_pa(bond.slip_m) {
+        Some(_) => slip(bond, &mut stretch, law, (pressed_n, input), scratch),
+        None => Some(law.tension_pa()),
     };
-    let left: Vec<Bond> = bonds.iter().filter(|bond| is_left(bond)).copied().collect();
-    *bonds = left;
+    let Some(tension_pa) = tension_pa else { return Some(0.0) };
+    let overload = stretch.overload(law, (pressed_n, tension_pa, bond.slip_m), scratch);
+    (overload > 0.0).then_some(overload)
 }
 
 /// Damages a bond by how far it is stretched. Gives its overload where it breaks at once.
@@ -135,7 +133,7 @@ fn slip(
 fn hand_over(
     (facet, target, element): Key,
     stretch: &Stretch,
-    (law, slip_m): (&dyn FrictionLaw, f64),
+    (law, slip_m, is_first): (&dyn FrictionLaw, f64, bool),
     input: &ContactInput,
     history: &mut ContactHistory,
 ) {
@@ -154,15 +152,17 @@ fn hand_over(
     let place = found.unwrap_or_else(|place| place);
     match found {
         // Beside bonds that hold, some of the facet may be left to friction already.
-        Ok(place) if law.tension_after_slip_pa(0.0).is_some() => {
-            let known = &mut history.facets[place].shear_n;
-            *known = [0, 1].map(|i| known[i] + memory.shear_n[i]);
+        Ok(place) => {
+            let known = &mut history.facets[place];
+            known.shear_n = [0, 1].map(|i| known.shear_n[i] + memory.shear_n[i]);
+            known.broken |= memory.broken;
         }
-        Ok(place) => history.facets[place] = memory,
         Err(place) => history.insert(place, memory),
     };
     let state = &mut history.state_of_mut(place)[..law.state_len()];
-    law.begin(state);
+    if is_first {
+        law.begin(state);
+    }
     if slip_m > 0.0 {
         state[0] = slip_m;
     }

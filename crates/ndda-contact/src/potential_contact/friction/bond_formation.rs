@@ -4,7 +4,7 @@ use ndda_mesh::geometry::triangle_area_vector;
 
 use crate::affine::convex_target::ConvexBlocks;
 use crate::broad_phase::candidates::{Candidates, Facet};
-use crate::friction::law_table::FrictionLawTable;
+use crate::friction::law_table::{FrictionLawTable, Memory};
 use crate::friction::stretch;
 use crate::integration::clip::{Form, Outline, Polygon};
 use crate::model::{Bond, ContactInput};
@@ -26,8 +26,8 @@ pub(crate) fn form(
     let facets = candidates.facets().filter(holds);
     for facet in facets {
         let Some(patch) = Patch::of(&facet, hulls, input) else { continue };
-        let law = joints.law(input.blocks, facet.triangle, facet.target);
-        if law.is_some_and(|law| law.fracture().is_some() || law.tension_after_slip_pa(0.0).is_some()) {
+        // With memory per element, what a facet has in each element is a contact of its own.
+        if joints.memory == Memory::Body {
             let points = patch.points();
             let three = points.into_iter().zip(loads(&points));
             bonds.extend(three.filter_map(|(at, bears)| patch.bond(at, (1.0 / 3.0, bears), input)));

@@ -35,6 +35,29 @@ pub(crate) fn left_to_friction(
     [pressure.max(0.0), free_m2.max(0.0)]
 }
 
+/// How many bonds of a facet have opened.
+pub(crate) fn opened(bonds: &[Bond], (blocks, memory, wanted): (&BlockSet, Memory, Key)) -> usize {
+    let first = bonds.partition_point(|bond| key(blocks, memory, bond) < wanted);
+    let own = bonds[first..].iter().take_while(|bond| key(blocks, memory, bond) == wanted);
+    own.filter(|bond| bond.damage >= 1.0).count()
+}
+
+/// Drops the bonds of facets on which none holds any more.
+pub(crate) fn forget_opened(bonds: &mut Vec<Bond>, blocks: &BlockSet, memory: Memory) {
+    let (mut start, mut kept) = (0, 0);
+    while let Some(first) = bonds.get(start) {
+        let wanted = key(blocks, memory, first);
+        let own = bonds[start..].iter().take_while(|bond| key(blocks, memory, bond) == wanted);
+        let end = start + own.count();
+        if bonds[start..end].iter().any(|bond| bond.damage < 1.0) {
+            bonds.copy_within(start..end, kept);
+            kept += end - start;
+        }
+        start = end;
+    }
+    bonds.truncate(kept);
+}
+
 pub(crate) fn key(blocks: &BlockSet, memory: Memory, bond: &Bond) -> Key {
     let element = (memory == Memory::Element).then_some(bond.tet);
     (bond.facet, blocks.tet_block[bond.tet.index()], element)

@@ -123,15 +123,14 @@ impl FacetScene<'_> {
         let broken = bonded
             .then(|| bonds_of_facet::broken_part(bonds, self.input.blocks, joints.memory, key))
             .flatten();
-        let opens = law.tension_after_slip_pa(0.0).is_some();
-        if broken.is_some_and(|part| part == 0.0 || law.fracture().is_none() && !opens) {
+        if broken == Some(0.0) {
             // The bond carries the shear.
             (force.sticks, force.memory) = (true, Some((memory.shear_n, false)));
             return;
         }
         let mut slip = self.slip(touch, (hits, sums), &basis, penalty_pa);
         slip.mean_area_m2 = 0.5 * (last_area_m2 + sums.area);
-        if broken.is_some() && opens {
+        if broken.is_some() && law.fracture().is_none() {
             let facet_m2 = triangle_area_vector(&corners).norm();
             let touches = (&sums.weights, sums.area, facet_m2);
             let [pressure, area_m2] =

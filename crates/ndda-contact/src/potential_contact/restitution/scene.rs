@@ -61,8 +61,7 @@ impl DampingScene<'_> {
         let element = by_element.then(|| self.integrals.overlaps_of(touch)[0].tet);
         let key = (touch.triangle, touch.target, element);
         match bonds_of_facet::broken_part(bonds, self.input.blocks, joints.memory, key) {
-            Some(part) if law.fracture().is_some() => part * stiffness_n_m,
-            Some(_) => 0.0,
+            Some(part) => part * stiffness_n_m,
             None => stiffness_n_m,
         }
     }
