@@ -3,7 +3,7 @@
 //! stiffness share the momentum, so that the last cube does not take all of it.
 
 use ndda::judge::verdict;
-use ndda_io::summary::LabelWord;
+use ndda::summary::LabelWord;
 use ndda_mesh::BlockId;
 use ndda_solver::Simulation;
 
