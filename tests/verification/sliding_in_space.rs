@@ -162,6 +162,26 @@ fn a_block_on_a_plane_slides_where_three_accelerations_drive_it() {
     }
 }
 
+#[test]
+fn a_block_that_sticks_follows_its_base_half_a_step_late() {
+    let sines = [(0.1, 2.0), (0.0, 1.0), (0.0, 1.0)];
+    // ∫ a dt at its largest, after half a period.
+    let fastest_m_s = 0.2 * G / (TAU * 2.0);
+    for step_s in [2e-4, 5e-5] {
+        let mut simulation = shaken(&on_a_plane(0.0, 30.0, step_s), &sines);
+        simulation.settle(&Settle::new(1e-5, 40_000)).unwrap();
+        let found = slips(&mut simulation, [BlockId(1), BlockId(0)], (0.3 / step_s).round() as usize);
+        let lag_m = found.iter().map(|u| u.norm()).fold(0.0, f64::max);
+        // The velocity of a base at the end of a step is its mean over the step; the mean of a sine over a step, and friction, are off by far less.
+        row(
+            CASE,
+            &format!("slip of a block that sticks, over the fastest base in a step, Δt = {step_s:e} s"),
+            lag_m / (fastest_m_s * step_s),
+            Near(0.5, 1e-3),
+        );
+    }
+}
+
 /// Dips of the two planes of a wedge towards 50° and 130°.
 const WEDGE_DIP_DEG: f64 = 50.0;
 
