@@ -1,4 +1,4 @@
-//! A plate of 1 m² that is glued under a fixed one and pulled off it at the edge of its kern, where the stress grows linearly from nothing to twice the mean.
+//! A plate of 1 m² that is glued under a fixed one and pulled at the edge of its kern, so that the stress grows linearly from nothing to twice the mean.
 
 use crate::evidence::Answer::Near;
 use crate::evidence::row;
@@ -10,9 +10,9 @@ const TENSION_PA: f64 = 1e5;
 /// Pull over σ_t A at which the edge is at its strength.
 const EXACT: f64 = 0.5;
 /// Bonds lie inside their facets, so that the edge is seen from within: an error of first order in the size of cells.
-const PER_CELL: f64 = 0.12;
+const PER_CELL: f64 = 0.15;
 
-/// Pull over σ_t A at which the plate comes off; plates of so many cells, and as many of the fixed one.
+/// Pull over σ_t A at which the first bond breaks; plates of so many cells, and as many of the fixed one.
 fn breaking(cells: u32, roof_cells: u32) -> f64 {
     let mut simulation = simulation(&format!(
         "(title: \"bond in bending\", time: (step_s: {STEP_S:e}, end_s: {END_S}),
@@ -29,7 +29,7 @@ fn breaking(cells: u32, roof_cells: u32) -> f64 {
     ));
     while simulation.time_s() < END_S {
         simulation.step().unwrap();
-        if simulation.state().contact.bonds.is_empty() {
+        if simulation.state().contact.bonds.iter().any(|bond| bond.damage >= 1.0) {
             return simulation.time_s() / END_S;
         }
     }
@@ -37,7 +37,7 @@ fn breaking(cells: u32, roof_cells: u32) -> f64 {
 }
 
 #[test]
-fn a_glued_plate_that_is_pulled_off_kern_comes_off_where_its_edge_is_at_its_strength() {
+fn a_glued_plate_that_is_pulled_at_the_edge_of_its_kern_breaks_where_its_own_edge_is_at_its_strength() {
     for (cells, roof_cells) in [(1, 1), (2, 1), (4, 1), (4, 3), (8, 6)] {
         row(
             "bonds in bending",

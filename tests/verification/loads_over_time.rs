@@ -121,3 +121,34 @@ fn a_force_on_blocks_by_pattern_pushes_each_through_its_mass_centre() {
         "{sideways:?}"
     );
 }
+
+/// A cube of one cell has no node where the force acts.
+#[test]
+fn a_force_on_a_point_without_a_node_turns_a_cube_about_its_mass_centre_as_it_should() {
+    for at in [Vec3::new(0.5, 1.0, 0.25), Vec3::new(0.3, 0.6, 0.9)] {
+        let mut simulation = simulation(&format!(
+            "(title: \"turned\", time: (step_s: 1e-4, end_s: 1), contact: Off,
+              materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: 6000)],
+              blocks: [(name: \"free\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)))],
+              forces: [(block: \"free\", at_m: ({}, {}, {}), force_n: (30, -20, 10))])",
+            at.x, at.y, at.z
+        ));
+        const STEPS: u32 = 10;
+        for _ in 0..STEPS {
+            simulation.step().unwrap();
+        }
+        simulation.sample().unwrap();
+        let moment = (at - Vec3::new(0.5, 0.5, 0.5)).cross(&Vec3::new(30.0, -20.0, 10.0));
+        let wanted = moment * 1e-4 * f64::from(STEPS);
+        let mass = &simulation.shape(ndda_mesh::BlockId(0)).operator.node_mass;
+        let (x, v) = (&simulation.state().position, &simulation.state().velocity);
+        // Of a cube that hardly turned: I = m/6.
+        let whole: f64 = mass.iter().sum();
+        let center = x.iter().sum::<Vec3>() / x.len() as f64;
+        let mean = v.iter().sum::<Vec3>() / v.len() as f64;
+        // ∑ r × v over the corners of a unit cube is 4 ω.
+        let spin = x.iter().zip(v).map(|(x, v)| (x - center).cross(&(v - mean))).sum::<Vec3>() / 4.0;
+        let found = spin * whole / 6.0;
+        assert!((found - wanted).norm() < 1e-6 * wanted.norm(), "{at:?}: {found:?}, not {wanted:?}");
+    }
+}

@@ -5,6 +5,7 @@ mod bodies;
 pub(crate) mod bolts;
 mod bonded;
 mod choices;
+pub(crate) mod forces;
 pub mod friction;
 mod monitors;
 pub mod overlaps;

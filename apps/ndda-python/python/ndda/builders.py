@@ -1478,7 +1478,7 @@ class Fill:
 
 @dataclass(kw_only=True)
 class Force(Builder):
-    """A force on a block, constant in direction: on the node nearest to a point, or through the mass centre.
+    """A force on a block, constant in direction: on a point, or through the mass centre.
 
     Parameters
     ----------

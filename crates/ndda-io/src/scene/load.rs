@@ -20,14 +20,14 @@ pub struct Traction {
     pub factor: Vec<FactorRow>,
 }
 
-/// A force on a block, constant in direction: on the node nearest to a point, or through the mass centre.
+/// A force on a block, constant in direction: on a point, or through the mass centre.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Force {
     /// Name of the block, or of many as in a support; each takes the whole force.
     pub block: String,
-    /// The point [m]; of many blocks, those that have it take the force. Default: through the mass centre, shared among
+    /// The point [m], whose force the corners of its tetrahedron share (outside of the block, the nearest node takes it); of many blocks, those that have it take the force. Default: through the mass centre, shared among
     /// all nodes by volume.
     #[serde(default)]
     pub at_m: Option<[f64; 3]>,

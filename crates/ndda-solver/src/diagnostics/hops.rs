@@ -29,8 +29,9 @@ pub(crate) struct Hops {
     /// Flights in a row that were longer than the one before, and the most so far.
     growing: u32,
     most: u32,
-    /// Flights after a touch with friction.
-    rubbed_flights: u32,
+    /// Flights after a touch in which friction acted and could stop the block, and the largest speed at which one ended [m/s].
+    stopped: u32,
+    stopped_m_s: f64,
     /// Length of this touch [s], and what contact has added to the velocity of the block in it [m/s].
     touch_s: f64,
     push_m_s: Vec3,
@@ -57,12 +58,15 @@ impl Hops {
     }
 
     fn land(&mut self, speed_m_s: f64) {
-        self.rubbed_flights += u32::from(self.rubbed && self.flight_s > 0.0);
         let grows = self.rubbed && self.last_flight_s > 0.0 && self.flight_s > GROWTH * self.last_flight_s;
         self.growing = if grows { self.growing + 1 } else { 0 };
         self.most = self.most.max(self.growing);
         // A faster block slips all through the touch, so that friction is μ times the normal force, however contact vibrates.
         let may_stick = speed_m_s < STICKS * self.push_m_s.norm();
+        if self.rubbed && may_stick && self.flight_s > 0.0 {
+            self.stopped += 1;
+            self.stopped_m_s = self.stopped_m_s.max(speed_m_s);
+        }
         if self.rubbed && may_stick && self.flight_s < SHORT * self.touch_s {
             self.short += 1;
             self.short_m_s = self.short_m_s.max(speed_m_s);
@@ -76,9 +80,9 @@ impl Hops {
         self.most
     }
 
-    /// Flights that came after a touch in which friction acted.
-    pub(crate) fn with_friction(&self) -> u32 {
-        self.rubbed_flights
+    /// Flights that came after a touch in which friction acted and could stop the block, and the largest speed at which one ended [m/s].
+    pub(crate) fn with_friction(&self) -> (u32, f64) {
+        (self.stopped, self.stopped_m_s)
     }
 
     /// Flights that were hardly longer than the touch before, in which friction acted and could stop the block, and the largest speed at which one ended [m/s].
@@ -131,16 +135,26 @@ mod tests {
     }
 
     #[test]
-    fn flights_count_from_the_second_touch_on_where_friction_acted() {
-        let counted = |has_friction: bool| {
+    fn flights_count_from_the_second_touch_on_where_friction_acted_and_could_stop_the_block() {
+        let counted = |has_friction: bool, speed_m_s: f64| {
             let mut hops = Hops::default();
-            let on_ground = RigidForcing { touches: true, has_friction, ..RigidForcing::default() };
+            let shift_m_s2 = 500.0 * Vec3::z();
+            let on_ground = RigidForcing {
+                touches: true,
+                has_friction,
+                shift_m_s2,
+                speed_m_s,
+                ..RigidForcing::default()
+            };
             for drive in [RigidForcing::default(), on_ground, on_ground, RigidForcing::default(), on_ground] {
                 hops.add(1e-3, &drive);
             }
             hops.with_friction()
         };
-        assert_eq!((counted(true), counted(false)), (1, 0));
+        assert_eq!(
+            [counted(true, 1.0), counted(false, 1.0), counted(true, 4.0)],
+            [(1, 1.0), (0, 0.0), (0, 0.0)]
+        );
     }
 
     #[test]

@@ -49,7 +49,7 @@ pub struct Invariants {
     pub growing_hops: Worst,
     /// Short hops of a block that deforms: contact lost and soon regained, where friction acted and could stop the block.
     pub chattering_hops: Worst,
-    /// Hops of a block with friction between them: small differences grow from hop to hop.
+    /// Hops of a block with friction between them that could stop it: small differences grow from hop to hop.
     pub hops_with_friction: Worst,
     /// Speed that a sliding block gained by sticking while its contact rebounded, over the largest speed.
     pub rebound_speed: Worst,

@@ -9,12 +9,12 @@ use ndda_fem::{
 };
 use ndda_io::record::Prepared;
 use ndda_io::scene::{self, By, Hold, Region, Scene};
-use ndda_mesh::geometry::{Aabb, tet_volume};
 use ndda_mesh::{BlockId, BlockSet};
 use ndda_solver::{BodyKind, BodySetup, ForceSetup, TractionSetup};
 
 use super::blast::add_blasts;
 use super::bonded;
+use super::forces::shares;
 use super::quiet::{add_quiet, add_ties};
 use super::regions::{in_region, loaded_triangles, region_nodes};
 use super::water::add_water;
@@ -149,40 +149,6 @@ fn initial_stress(
 
 fn voigt(s: &scene::Stress) -> Voigt {
     Voigt::new(s.xx, s.yy, s.zz, s.xy, s.yz, s.zx)
-}
-
-/// The nodes that a force acts on, and their shares of it.
-fn shares(blocks: &BlockSet, block: BlockId, force: &scene::Force) -> Result<Vec<(u32, f64)>, String> {
-    match force.at_m {
-        Some(at_m) => Ok(vec![(nearest_node(blocks, block, at_m)?, 1.0)]),
-        None => Ok((0..).zip(volume_shares(blocks, block)).collect()),
-    }
-}
-
-/// The part of a block's volume that is each node's: their mean place is the mass centre.
-fn volume_shares(blocks: &BlockSet, block: BlockId) -> Vec<f64> {
-    let nodes = &blocks.rest_position[blocks.nodes_of(block)];
-    let mut shares = vec![0.0; nodes.len()];
-    for tet in blocks.local_tets(block) {
-        let volume = tet_volume(&tet.map(|node| nodes[node as usize]));
-        tet.iter().for_each(|&node| shares[node as usize] += volume);
-    }
-    let whole: f64 = shares.iter().sum();
-    shares.iter_mut().for_each(|share| *share /= whole);
-    shares
-}
-
-/// The node nearest to a place, which must not be outside of the block's box by more than a tenth of it.
-fn nearest_node(blocks: &BlockSet, block: BlockId, at_m: [f64; 3]) -> Result<u32, String> {
-    let place = vec3(at_m) - blocks.origin_m;
-    let nodes = &blocks.rest_position[blocks.nodes_of(block)];
-    let bounds = Aabb::around(nodes);
-    if !bounds.inflated(0.1 * bounds.diagonal()).touches(&Aabb { min: place, max: place }) {
-        return Err(format!("this point is not on block `{}`", blocks.names[block.index()]));
-    }
-    let distance = |i: usize| (nodes[i] - place).norm_squared();
-    let nearest = (0..nodes.len()).min_by(|&i, &j| distance(i).total_cmp(&distance(j)));
-    Ok(nearest.ok_or("the block has no nodes")? as u32)
 }
 
 fn materials(scene: &Scene, faults: &mut Vec<Fault>) -> Vec<Option<Arc<dyn Material>>> {

@@ -1,20 +1,25 @@
-//! Points of forces that no node is near.
+//! Points of forces that are outside of their blocks.
 
 use ndda_io::scene::{Scene, matches};
 use ndda_mesh::geometry::Aabb;
 use ndda_mesh::{BlockSet, Vec3};
 
+use crate::build::forces::shares_at;
+
 /// Distance from the point to the node that takes the force, over the size of its block, from which on it is a doubt.
 const FAR: f64 = 0.05;
 
-/// Forces that act on a node far from the point that the scene gives.
+/// Forces on points outside of their blocks, which act on a node far from there.
 pub fn findings(scene: &Scene, blocks: &BlockSet) -> Vec<String> {
     let mut found = Vec::new();
     for (i, force) in scene.forces.iter().enumerate() {
         let Some(at_m) = force.at_m else { continue };
         let at = Vec3::from(at_m) - blocks.origin_m;
-        let named = blocks.ids().filter(|block| matches(&force.block, &blocks.names[block.index()]));
-        let nearest = named.map(|block| {
+        let named = || blocks.ids().filter(|block| matches(&force.block, &blocks.names[block.index()]));
+        if named().any(|block| shares_at(blocks, block, &at).is_some()) {
+            continue;
+        }
+        let nearest = named().map(|block| {
             let nodes = &blocks.rest_position[blocks.nodes_of(block)];
             let extent = Aabb::around(nodes);
             let distance_m = nodes.iter().map(|x| (x - at).norm()).fold(f64::INFINITY, f64::min);
@@ -23,8 +28,8 @@ pub fn findings(scene: &Scene, blocks: &BlockSet) -> Vec<String> {
         let Some((distance_m, size_m, block)) = nearest.min_by(|a, b| a.0.total_cmp(&b.0)) else { continue };
         if distance_m > FAR * size_m {
             found.push(format!(
-                "forces[{i}] acts {distance_m:.3} m away from its at_m, on the nearest node of block `{}`: give a point that is a node, or more cells; without at_m it \
-                 acts through the mass centre",
+                "forces[{i}] acts {distance_m:.3} m away from its at_m, which is outside of block `{}`, on its nearest node: give a point of the block; without at_m \
+                 it acts through the mass centre",
                 blocks.names[block.index()]
             ));
         }
@@ -37,7 +42,7 @@ mod tests {
     use crate::Model;
 
     #[test]
-    fn a_force_on_a_point_without_a_node_is_told_and_one_on_a_corner_is_not() {
+    fn a_force_on_a_point_outside_of_its_block_is_told_and_one_on_a_face_is_not() {
         let found = |at: &str| {
             let text = format!(
                 "(title: \"pushed\", time: (step_s: 1e-4, end_s: 1e-3),
@@ -50,7 +55,8 @@ mod tests {
         };
         assert_eq!(found("at_m: (0, 0, 0), "), Vec::<String>::new());
         assert_eq!(found(""), Vec::<String>::new());
-        let told = found("at_m: (0, 0.5, 0.2), ");
-        assert!(told.len() == 1 && told[0].starts_with("forces[0] acts 0.539 m away"), "{told:?}");
+        assert_eq!(found("at_m: (0, 0.5, 0.2), "), Vec::<String>::new());
+        let told = found("at_m: (-0.1, 0.5, 0.2), ");
+        assert!(told.len() == 1 && told[0].starts_with("forces[0] acts 0.548 m away"), "{told:?}");
     }
 }

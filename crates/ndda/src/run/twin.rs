@@ -207,7 +207,7 @@ fn compare(simulation: &Simulation, twin: &(Vec<Vec3>, Vec<Vec3>), drift_m: f64)
     let ids = || simulation.blocks().ids();
     let parted = |block: BlockId| {
         let apart_m = farthest(simulation, block, &state.position, &twin.0);
-        let faster_m_s = farthest(simulation, block, &state.velocity, &twin.1);
+        let faster_m_s = (mean(simulation, block, &state.velocity) - mean(simulation, block, &twin.1)).norm();
         let place = apart_m / (AWAY * height_m(simulation, block) + drift_m);
         let speed = if apart_m > drift_m { faster_m_s / (FASTER * largest_m_s) } else { 0.0 };
         (block, place, speed, apart_m, faster_m_s)
@@ -227,7 +227,13 @@ fn compare(simulation: &Simulation, twin: &(Vec<Vec3>, Vec<Vec3>), drift_m: f64)
     })
 }
 
-/// Whether a block has hopped many times with friction in between.
+/// Mean velocity of the nodes of a block [m/s].
+fn mean(simulation: &Simulation, block: BlockId, velocity: &[Vec3]) -> Vec3 {
+    let own = &velocity[simulation.blocks().nodes_of(block)];
+    own.iter().sum::<Vec3>() / own.len() as f64
+}
+
+/// Whether a block has hopped many times with friction in between that could stop it.
 fn hops(simulation: &Simulation) -> bool {
     simulation.invariants().hops_with_friction.value >= HOPS
 }

@@ -19,11 +19,14 @@ impl BlockDiagnostics {
         (growing, short)
     }
 
-    /// Most hops of a block with friction between them.
-    pub(crate) fn hops_with_friction(&self) -> Worst {
+    /// Most hops of a block with friction between them that could stop it; hops that rounding may have made do not count.
+    pub(crate) fn hops_with_friction(&self, rounding_j: f64) -> Worst {
         let mut worst = Worst::default();
-        for (block, balance) in self.balances.iter().enumerate() {
-            worst.take(f64::from(balance.hops.with_friction()), block);
+        for (block, (balance, scale)) in self.balances.iter().zip(&self.scales).enumerate() {
+            let (hops, speed_m_s) = balance.hops.with_friction();
+            if 0.5 * scale.mass_kg * speed_m_s * speed_m_s > rounding_j {
+                worst.take(f64::from(hops), block);
+            }
         }
         worst
     }
