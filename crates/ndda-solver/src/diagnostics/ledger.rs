@@ -362,7 +362,7 @@ impl Ledger {
             creep_place,
             growing_hops,
             chattering_hops,
-            hops_with_friction: self.blocks.hops_with_friction(self.rounding_j),
+            hops_with_friction: self.blocks.hops_with_friction(self.largest_speed_m_s, self.rounding_j),
             rebound_speed: self.blocks.rebound(scale_m_s, self.rounding_j),
             lumped_speed,
             lumped_place,

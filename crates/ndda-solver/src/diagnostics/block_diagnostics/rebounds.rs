@@ -3,6 +3,9 @@
 use super::{BlockBalance, BlockDiagnostics};
 use crate::diagnostics::worst::Worst;
 
+/// Hops at a smaller part of the largest speed are of a time before, when the block was slower.
+const FAST: f64 = 0.5;
+
 impl BlockDiagnostics {
     /// Most hops in a row that friction lets grow, and most short hops of a block that deforms. Those of rigid blocks are resolved; hops that rounding may have
     /// made do not count, nor those that are slow beside the largest speed.
@@ -11,7 +14,7 @@ impl BlockDiagnostics {
         for (block, (balance, scale)) in self.balances.iter().zip(&self.scales).enumerate() {
             growing.take(f64::from(balance.hops.most()), block);
             let (hops, speed_m_s) = balance.hops.short();
-            let counts = scale.deforms && speed_m_s > 0.5 * largest_m_s;
+            let counts = scale.deforms && speed_m_s > FAST * largest_m_s;
             if counts && 0.5 * scale.mass_kg * speed_m_s * speed_m_s > rounding_j {
                 short.take(f64::from(hops), block);
             }
@@ -19,12 +22,13 @@ impl BlockDiagnostics {
         (growing, short)
     }
 
-    /// Most hops of a block with friction between them that could stop it; hops that rounding may have made do not count.
-    pub(crate) fn hops_with_friction(&self, rounding_j: f64) -> Worst {
+    /// Most hops of a block with friction between them that could stop it; hops that rounding may have made do not count, nor those that are slow beside the largest speed.
+    pub(crate) fn hops_with_friction(&self, largest_m_s: f64, rounding_j: f64) -> Worst {
         let mut worst = Worst::default();
         for (block, (balance, scale)) in self.balances.iter().zip(&self.scales).enumerate() {
             let (hops, speed_m_s) = balance.hops.with_friction();
-            if 0.5 * scale.mass_kg * speed_m_s * speed_m_s > rounding_j {
+            let counts = speed_m_s > FAST * largest_m_s;
+            if counts && 0.5 * scale.mass_kg * speed_m_s * speed_m_s > rounding_j {
                 worst.take(f64::from(hops), block);
             }
         }
