@@ -1487,7 +1487,8 @@ class Force(Builder):
     force_n : Sequence[float]
         Force [N].
     at_m : Sequence[float], optional
-        The point [m]; of many blocks, those that have it take the force. Default: through the mass centre,
+        The point [m], whose force the corners of its tetrahedron share (outside of the block, the nearest
+        node takes it); of many blocks, those that have it take the force. Default: through the mass centre,
         shared among all nodes by volume.
     factor : list[FactorRow], optional
         Factor over time, linear between rows and constant outside. Default: 1.
