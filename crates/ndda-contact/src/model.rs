@@ -269,16 +269,16 @@ pub struct Bond {
     pub share: f64,
     /// Part of the facet's contact that it holds: one bond holds all of it, or three a third each.
     pub part: f64,
-    /// Part of it that is broken, where bonds break gradually.
+    /// Part of it that is broken: 1 once it has broken, less where bonds break gradually.
     pub damage: f64,
     /// By how much it has slipped, where bonds slip without breaking [m].
     pub slip_m: f64,
-    /// Its part of the facet's normal force where that acts at each corner of the facet; in between it is linear.
+    /// Its share of a normal force that acts at the first, second or third corner of the facet; of one in between, linear interpolation.
     pub bears: [f64; 3],
 }
 
 impl Bond {
-    /// What it bears of a force whose moments on the corners of the facet are these.
+    /// Its share of a normal force, of which each corner of the facet has this part.
     pub(crate) fn borne(&self, weights: &[f64; 3]) -> f64 {
         self.bears.iter().zip(weights).map(|(part, weight)| part * weight).sum()
     }

@@ -5,6 +5,7 @@ mod builder;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
+use crate::geometry::barycentric;
 use crate::node_sets::NodeSets;
 use crate::{BlockId, BlockMesh, MeshError, NodeId, TetId, TriangleId, Vec3};
 
@@ -129,6 +130,22 @@ impl BlockSet {
     /// Corner positions of a tetrahedron [m], `position` being per node.
     pub fn tet_corners(&self, tet: TetId, position: &[Vec3]) -> [Vec3; 4] {
         self.tets[tet.index()].map(|n| position[n.index()])
+    }
+
+    /// The tetrahedron of a block, as drawn, in which a point lies deepest, and the point's barycentric coordinates there, the least of which is negative outside of
+    /// the block. None where no tetrahedron has a volume.
+    pub fn deepest_tet(&self, block: BlockId, point: &Vec3) -> Option<(TetId, [f64; 4])> {
+        let mut best = (f64::NEG_INFINITY, None);
+        for tet in self.tets_of(block).map(|tet| TetId(tet as u32)) {
+            let Some(weights) = barycentric(&self.tet_corners(tet, &self.rest_position), point) else {
+                continue;
+            };
+            let depth = weights.iter().copied().fold(f64::INFINITY, f64::min);
+            if depth > best.0 {
+                best = (depth, Some((tet, weights)));
+            }
+        }
+        best.1
     }
 
     /// Corner positions of a boundary triangle [m], `position` being per node.

@@ -143,17 +143,10 @@ impl Line {
 
     /// The point at a distance from the head, in that tetrahedron of a block in which it lies deepest.
     pub(crate) fn anchor(&self, blocks: &BlockSet, block: BlockId, along_m: f64) -> Anchor {
-        let point = self.at(along_m);
-        let mut best = (f64::NEG_INFINITY, Anchor { nodes: [0; 4], weights: [0.25; 4] });
-        for tet in blocks.tets_of(block) {
-            let corners = blocks.tet_corners(TetId(tet as u32), &blocks.rest_position);
-            let Some(weights) = barycentric(&corners, &point) else { continue };
-            let depth = weights.iter().copied().fold(f64::INFINITY, f64::min);
-            if depth > best.0 {
-                best = (depth, Anchor { nodes: blocks.tets[tet].map(|node| node.0), weights });
-            }
+        match blocks.deepest_tet(block, &self.at(along_m)) {
+            Some((tet, weights)) => Anchor { nodes: blocks.tets[tet.index()].map(|node| node.0), weights },
+            None => Anchor { nodes: [0; 4], weights: [0.25; 4] },
         }
-        best.1
     }
 }
 

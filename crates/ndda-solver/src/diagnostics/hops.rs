@@ -63,11 +63,12 @@ impl Hops {
         self.most = self.most.max(self.growing);
         // A faster block slips all through the touch, so that friction is μ times the normal force, however contact vibrates.
         let may_stick = speed_m_s < STICKS * self.push_m_s.norm();
-        if self.rubbed && may_stick && self.flight_s > 0.0 {
+        let may_stop = self.rubbed && may_stick;
+        if may_stop && self.flight_s > 0.0 {
             self.stopped += 1;
             self.stopped_m_s = self.stopped_m_s.max(speed_m_s);
         }
-        if self.rubbed && may_stick && self.flight_s < SHORT * self.touch_s {
+        if may_stop && self.flight_s < SHORT * self.touch_s {
             self.short += 1;
             self.short_m_s = self.short_m_s.max(speed_m_s);
         }
@@ -95,10 +96,16 @@ impl Hops {
 mod tests {
     use super::*;
 
+    /// A step on the ground, which pushes the block up.
+    fn on_ground(has_friction: bool, push_m_s2: f64, speed_m_s: f64) -> RigidForcing {
+        let shift_m_s2 = push_m_s2 * Vec3::z();
+        RigidForcing { touches: true, has_friction, shift_m_s2, speed_m_s, ..RigidForcing::default() }
+    }
+
     /// Most growing hops of flights of so many steps.
     fn most(flights: &[u32], has_friction: bool) -> u32 {
         let mut hops = Hops::default();
-        let on_ground = RigidForcing { touches: true, has_friction, ..RigidForcing::default() };
+        let on_ground = on_ground(has_friction, 0.0, 0.0);
         for &flight in flights {
             hops.add(1e-3, &on_ground);
             (0..flight).for_each(|_| hops.add(1e-3, &RigidForcing::default()));
@@ -112,14 +119,7 @@ mod tests {
     {
         let short = |touch: u32, flight: u32, has_friction: bool, push_m_s2: f64| {
             let mut hops = Hops::default();
-            let (shift_m_s2, speed_m_s) = (push_m_s2 * Vec3::z(), 2.0);
-            let on_ground = RigidForcing {
-                touches: true,
-                has_friction,
-                shift_m_s2,
-                speed_m_s,
-                ..RigidForcing::default()
-            };
+            let on_ground = on_ground(has_friction, push_m_s2, 2.0);
             for _ in 0..3 {
                 (0..touch).for_each(|_| hops.add(1e-3, &on_ground));
                 (0..flight).for_each(|_| hops.add(1e-3, &RigidForcing::default()));
@@ -138,14 +138,7 @@ mod tests {
     fn flights_count_from_the_second_touch_on_where_friction_acted_and_could_stop_the_block() {
         let counted = |has_friction: bool, speed_m_s: f64| {
             let mut hops = Hops::default();
-            let shift_m_s2 = 500.0 * Vec3::z();
-            let on_ground = RigidForcing {
-                touches: true,
-                has_friction,
-                shift_m_s2,
-                speed_m_s,
-                ..RigidForcing::default()
-            };
+            let on_ground = on_ground(has_friction, 500.0, speed_m_s);
             for drive in [RigidForcing::default(), on_ground, on_ground, RigidForcing::default(), on_ground] {
                 hops.add(1e-3, &drive);
             }

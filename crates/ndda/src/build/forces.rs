@@ -1,7 +1,7 @@
 //! Forces on points of blocks, as forces on nodes.
 
 use ndda_io::scene;
-use ndda_mesh::geometry::{Aabb, barycentric, tet_volume};
+use ndda_mesh::geometry::{Aabb, tet_volume};
 use ndda_mesh::{BlockId, BlockSet, Vec3};
 
 use super::vec3;
@@ -28,14 +28,12 @@ pub(super) fn shares(
 /// Corners of the tetrahedron that has a place, and its barycentric coordinates: shares of a force there that have its moment about any point. None where the place
 /// is outside of the block.
 pub(crate) fn shares_at(blocks: &BlockSet, block: BlockId, place: &Vec3) -> Option<Vec<(u32, f64)>> {
-    let nodes = &blocks.rest_position[blocks.nodes_of(block)];
-    let least = |lambda: &[f64; 4]| lambda.iter().copied().fold(f64::INFINITY, f64::min);
-    let deepest = blocks
-        .local_tets(block)
-        .filter_map(|tet| barycentric(&tet.map(|node| nodes[node as usize]), place).map(|l| (tet, l)))
-        .max_by(|a, b| least(&a.1).total_cmp(&least(&b.1)));
-    let (tet, lambda) = deepest.filter(|(_, lambda)| least(lambda) >= -ROUNDING)?;
-    let pairs = || tet.into_iter().zip(lambda);
+    let (tet, shares) = blocks.deepest_tet(block, place)?;
+    if shares.iter().any(|share| *share < -ROUNDING) {
+        return None;
+    }
+    let first = blocks.nodes_of(block).start as u32;
+    let pairs = || blocks.tets[tet.index()].iter().map(|node| node.0 - first).zip(shares);
     match pairs().find(|(_, share)| *share > 1.0 - NODE) {
         Some((node, _)) => Some(vec![(node, 1.0)]),
         None => Some(pairs().collect()),

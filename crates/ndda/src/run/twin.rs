@@ -202,29 +202,37 @@ fn run(
 /// Where positions and velocities of the twin are too far from those of the run. A velocity counts only where the position has gone farther than the
 /// difference at the start would take it by itself: in the middle of a collision, a moment makes all the difference.
 fn compare(simulation: &Simulation, twin: &(Vec<Vec3>, Vec<Vec3>), drift_m: f64) -> Option<Parted> {
-    let state = simulation.state();
-    let largest_m_s = simulation.speed_scale_m_s();
-    let ids = || simulation.blocks().ids();
-    let parted = |block: BlockId| {
+    let (state, largest_m_s) = (simulation.state(), simulation.speed_scale_m_s());
+    let differs = |block: BlockId| {
         let apart_m = farthest(simulation, block, &state.position, &twin.0);
         let faster_m_s = (mean(simulation, block, &state.velocity) - mean(simulation, block, &twin.1)).norm();
         let place = apart_m / (AWAY * height_m(simulation, block) + drift_m);
         let speed = if apart_m > drift_m { faster_m_s / (FASTER * largest_m_s) } else { 0.0 };
-        (block, place, speed, apart_m, faster_m_s)
+        Difference { block, apart_m, faster_m_s, place, speed }
     };
-    let all: Vec<_> = ids().map(parted).collect();
+    let all: Vec<Difference> = simulation.blocks().ids().map(differs).collect();
     // A position that is elsewhere says more than a velocity.
-    let place = all.iter().max_by(|a, b| a.1.total_cmp(&b.1)).filter(|b| b.1 > 1.0);
-    let speed = all.iter().max_by(|a, b| a.2.total_cmp(&b.2)).filter(|b| b.2 > 1.0);
-    let &(block, _, _, apart_m, faster_m_s) = place.or(speed)?;
-    let over = |value: &(BlockId, f64, f64, f64, f64)| if place.is_some() { value.1 } else { value.2 };
+    let is_elsewhere = all.iter().any(|one| one.place > 1.0);
+    let over = |one: &Difference| if is_elsewhere { one.place } else { one.speed };
+    let worst = all.iter().max_by(|a, b| over(a).total_cmp(&over(b))).filter(|one| over(one) > 1.0)?;
     Some(Parted {
-        block: simulation.blocks().names[block.index()].clone(),
-        apart_m,
-        faster_m_s: place.is_none().then_some(faster_m_s),
-        blocks: all.iter().filter(|value| over(value) > 1.0).count(),
+        block: simulation.blocks().names[worst.block.index()].clone(),
+        apart_m: worst.apart_m,
+        faster_m_s: (!is_elsewhere).then_some(worst.faster_m_s),
+        blocks: all.iter().filter(|one| over(one) > 1.0).count(),
         hops: hops(simulation),
     })
+}
+
+/// How far a block of the twin is from that of the run.
+struct Difference {
+    block: BlockId,
+    /// Distance [m] and difference of velocities [m/s].
+    apart_m: f64,
+    faster_m_s: f64,
+    /// The same over what is allowed.
+    place: f64,
+    speed: f64,
 }
 
 /// Mean velocity of the nodes of a block [m/s].

@@ -30,11 +30,11 @@ pub struct Opened {
     pub has_tension: bool,
 }
 
-/// What the joints of blocks that are about to slide have lost by opening since they touched first; none where it does not matter. Only of joints that keep cohesion while
-/// they slip: of others it is gone in any case.
+/// Cohesion that joints of blocks near failure have lost since the blocks were drawn, because they opened; none where it is little. Counted for joints that keep their
+/// cohesion while they slip; others lose it anyway.
 ///
 /// # Errors
-/// Those of the scene.
+/// [`SceneErrors`] if the simulation cannot be built anew.
 pub fn of(standing: &Model, folder: &Path, moving: &[&str]) -> Result<Option<Opened>, SceneErrors> {
     let mut begun = Model::resuming_with(standing.loaded.clone(), folder, Choices::default())?.simulation;
     // Bonds form in the first step.

@@ -8,10 +8,10 @@
 //! f = ½ S (k_b max(δ, 0) n + k_s s)        σ = (f_n − ½ S k_b max(δ, 0)) / ½ S
 //! ```
 //!
-//! the half because facets of both sides carry bonds; f_n is the facet's contact force. The bond breaks for good when
-//! k_b δ > σ_t or |k_s s| > max(0, c + σ tan φ). Its shear is then handed to the friction law of the facet. Where the law says that slip leaves a tensile
-//! strength, a bond that is overloaded in shear slips instead: the point that it holds to follows the facet. Where the law has a fracture energy
-//! ([`Fracture`]), a facet has three bonds, each breaks gradually, and the facet's friction acts on the part of it that is broken. As shear is
+//! the half because facets of both sides carry bonds. A facet has three, for a third of its area each, so that they carry moments; f_n is the bond's share of the facet's
+//! contact force. A bond breaks for good when k_b δ > σ_t or |k_s s| > max(0, c + σ tan φ), and its shear becomes friction of the facet, which acts on what broken bonds
+//! held. Where the law says that slip leaves a tensile strength, a bond that is overloaded in shear slips instead: the point that it holds to follows the facet. Where the
+//! law has a fracture energy ([`Fracture`]), bonds break gradually. As shear is
 //! measured from where the bond formed, it does not depend on whether the joint was open or closed on the way. Both
 //! blocks feel f at the same place, so its torques balance, and its work is booked as that of friction.
 
@@ -26,7 +26,7 @@ use crate::integration::integrals::Integrals;
 use crate::model::{Bond, ContactHistory, ContactInput, ContactOutput, FacetContact, FacetMemory};
 use crate::pair_stiffness::PairStiffness;
 
-/// Opens the bonds that break, and hands their shear to the friction law of their facet; drops those of a facet that are all open. Gives the largest
+/// Breaks overloaded bonds, and hands their shear to the friction law of their facet; forgets the bonds of a facet once all of them are broken. Gives the largest
 /// overload of those that break.
 pub(crate) fn break_overloaded(
     joints: &FrictionLawTable,
@@ -76,7 +76,7 @@ pub(crate) fn break_overloaded(
     largest
 }
 
-/// By how much a bond is overloaded that breaks; none where it holds. Where its law says that slip leaves a tensile strength, it slips first.
+/// Overload of a bond that breaks, over its strength without normal stress; none where it holds. A bond whose law lets it slip does so first.
 fn overload(
     bond: &mut Bond,
     law: Option<&dyn FrictionLaw>,
@@ -299,14 +299,18 @@ mod tests {
     use crate::PotentialContact;
     use crate::testing::{evaluate, test_box, test_set};
 
+    fn plate_on_a_slab() -> BlockSet {
+        let lower = test_box([0.0; 3], [3.0, 3.0, 1.0], [3, 3, 1]);
+        let upper = test_box([1.0, 1.0, 1.0], [1.0, 1.0, 0.5], [1, 1, 1]);
+        test_set(vec![lower, upper])
+    }
+
     #[test]
     fn a_bond_holds_its_tension_and_breaks_for_good() {
         let (stiffness, tension) = (1e9, 1e3);
         let law = crate::MohrCoulomb::new(30.0, stiffness, 0.0, tension);
         let mut model = PotentialContact::new(1e9).with_friction(Box::new(law));
-        let lower = test_box([0.0; 3], [3.0, 3.0, 1.0], [3, 3, 1]);
-        let upper = test_box([1.0, 1.0, 1.0], [1.0, 1.0, 0.5], [1, 1, 1]);
-        let blocks = test_set(vec![lower, upper]);
+        let blocks = plate_on_a_slab();
         let velocity = vec![Vec3::zeros(); blocks.rest_position.len()];
         let mut history = ContactHistory::default();
         let upper = blocks.nodes_of(BlockId(1));
@@ -339,9 +343,7 @@ mod tests {
         let apex = cohesion / 30f64.to_radians().tan();
         let law = crate::SofteningCoulomb::new(stiffness, (30.0, cohesion), (30.0, cohesion), 0.0);
         let mut model = PotentialContact::new(1e9).with_friction(Box::new(law.with_tension(apex, apex)));
-        let lower = test_box([0.0; 3], [3.0, 3.0, 1.0], [3, 3, 1]);
-        let upper = test_box([1.0, 1.0, 1.0], [1.0, 1.0, 0.5], [1, 1, 1]);
-        let blocks = test_set(vec![lower, upper]);
+        let blocks = plate_on_a_slab();
         let velocity = vec![Vec3::zeros(); blocks.rest_position.len()];
         let mut history = ContactHistory::default();
         let upper = blocks.nodes_of(BlockId(1));

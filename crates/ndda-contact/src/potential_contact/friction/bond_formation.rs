@@ -1,6 +1,7 @@
 //! Where bonds form.
 
 use ndda_mesh::geometry::triangle_area_vector;
+use ndda_mesh::planar::turn;
 
 use crate::affine::convex_target::ConvexBlocks;
 use crate::broad_phase::candidates::{Candidates, Facet};
@@ -39,7 +40,7 @@ pub(crate) fn form(
 
 /// The parts of a force on a facet that three of its points bear together, per corner of the facet that it acts at; equal parts where they lie in a line.
 fn loads(points: &[[f64; 2]; 3]) -> [[f64; 3]; 3] {
-    let area = |[a, b, c]: [[f64; 2]; 3]| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+    let area = |[a, b, c]: [[f64; 2]; 3]| turn(&a, &b, &c);
     let all = area(*points);
     let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
     [0, 1, 2].map(|point| {

@@ -8,22 +8,30 @@ use crate::model::Bond;
 /// Identifies a facet's contact: the triangle, the other block and, with memory per element, the element.
 pub(crate) type Key = (TriangleId, BlockId, Option<TetId>);
 
+/// The bonds of a facet; all are in the order of their keys.
+fn of_facet<'a>(
+    bonds: &'a [Bond],
+    (blocks, memory, wanted): (&'a BlockSet, Memory, Key),
+) -> impl Iterator<Item = &'a Bond> {
+    let first = bonds.partition_point(|bond| key(blocks, memory, bond) < wanted);
+    bonds[first..].iter().take_while(move |bond| key(blocks, memory, bond) == wanted)
+}
+
 /// Part of a facet's contact that no bond holds any more; none where there are no bonds.
 pub(crate) fn broken_part(bonds: &[Bond], blocks: &BlockSet, memory: Memory, wanted: Key) -> Option<f64> {
-    let first = bonds.partition_point(|bond| key(blocks, memory, bond) < wanted);
-    let own = bonds[first..].iter().take_while(|bond| key(blocks, memory, bond) == wanted);
+    let own = of_facet(bonds, (blocks, memory, wanted));
     let whole: f64 = own.map(|bond| (1.0 - bond.damage) * bond.part).sum();
     (whole > 0.0).then_some(1.0 - whole)
 }
 
-/// What bonds of a facet that have opened leave to its friction: their part of a force of these moments on its corners, and of the area what the others do not hold.
+/// What the broken bonds of a facet leave to its friction: ∫ φ dA that they would bear, of which each corner has its weight, and the area that the other bonds do not
+/// hold [m²].
 pub(crate) fn left_to_friction(
     bonds: &[Bond],
-    (blocks, memory, wanted): (&BlockSet, Memory, Key),
+    facet: (&BlockSet, Memory, Key),
     (weights, area_m2, facet_m2): (&[f64; 3], f64, f64),
 ) -> [f64; 2] {
-    let first = bonds.partition_point(|bond| key(blocks, memory, bond) < wanted);
-    let own = bonds[first..].iter().take_while(|bond| key(blocks, memory, bond) == wanted);
+    let own = of_facet(bonds, facet);
     let (mut pressure, mut free_m2) = (0.0, area_m2);
     for bond in own {
         if bond.damage < 1.0 {
@@ -36,10 +44,8 @@ pub(crate) fn left_to_friction(
 }
 
 /// How many bonds of a facet have opened.
-pub(crate) fn opened(bonds: &[Bond], (blocks, memory, wanted): (&BlockSet, Memory, Key)) -> usize {
-    let first = bonds.partition_point(|bond| key(blocks, memory, bond) < wanted);
-    let own = bonds[first..].iter().take_while(|bond| key(blocks, memory, bond) == wanted);
-    own.filter(|bond| bond.damage >= 1.0).count()
+pub(crate) fn opened(bonds: &[Bond], facet: (&BlockSet, Memory, Key)) -> usize {
+    of_facet(bonds, facet).filter(|bond| bond.damage >= 1.0).count()
 }
 
 /// Drops the bonds of facets on which none holds any more.

@@ -63,7 +63,7 @@ impl SofteningCoulomb {
         if memory.broken { 1.0 } else { self.softened_by(memory.state[0]) }
     }
 
-    /// The same after a plastic slip [m].
+    /// Part of the way from peak to residual after a plastic slip [m].
     fn softened_by(&self, slip_m: f64) -> f64 {
         if slip_m >= self.over_m { 1.0 } else { slip_m / self.over_m }
     }
@@ -127,7 +127,7 @@ impl FrictionLaw for SofteningCoulomb {
 
     fn tension_after_slip_pa(&self, slip_m: f64) -> Option<f64> {
         let [peak_pa, residual_pa] = self.tension_pa;
-        // What has not slipped is whole, also where strength falls at once.
+        // Before any slip a joint has its peak strength, also where that falls to the residual one at once (over_m = 0).
         let softened = if slip_m > 0.0 { self.softened_by(slip_m) } else { 0.0 };
         (peak_pa > 0.0).then_some(peak_pa + softened * (residual_pa - peak_pa))
     }

@@ -78,7 +78,7 @@ impl Stretch {
         self.whole * law.shear_stiffness_pa_m() * self.half_area * self.offset_m
     }
 
-    /// What a law remembers of a bond that has slipped.
+    /// The state of the friction law after a slip of the bond [m].
     pub(crate) fn memory<'a>(
         &self,
         (law, slip_m): (&dyn FrictionLaw, f64),

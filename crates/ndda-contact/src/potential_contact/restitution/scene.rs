@@ -60,10 +60,8 @@ impl DampingScene<'_> {
         let by_element = joints.memory == Memory::Element;
         let element = by_element.then(|| self.integrals.overlaps_of(touch)[0].tet);
         let key = (touch.triangle, touch.target, element);
-        match bonds_of_facet::broken_part(bonds, self.input.blocks, joints.memory, key) {
-            Some(part) => part * stiffness_n_m,
-            None => stiffness_n_m,
-        }
+        let broken = bonds_of_facet::broken_part(bonds, self.input.blocks, joints.memory, key);
+        broken.unwrap_or(1.0) * stiffness_n_m
     }
 
     /// Shares of the nodes of one of both blocks in the push of a facet.
