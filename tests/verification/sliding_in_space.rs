@@ -9,7 +9,7 @@ use ndda::summary::LabelWord;
 use ndda_mesh::{BlockId, Vec3};
 use ndda_solver::{Settle, Simulation};
 
-use crate::evidence::Answer::{AtMost, Near, Within};
+use crate::evidence::Answer::{AtMost, Near};
 use crate::evidence::row;
 
 const CASE: &str = "sliding in space";
@@ -100,14 +100,14 @@ fn farthest(found: &[Vec3], exact: &[Vec3]) -> (f64, f64) {
     (found.iter().zip(exact).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max), largest)
 }
 
-/// A rigid block on a base that dips towards x.
-fn on_a_plane(dip_deg: f64, friction_deg: f64, step_s: f64) -> String {
+/// A rigid block on a base of some body that dips towards x.
+fn on_a_plane(base: &str, dip_deg: f64, friction_deg: f64, step_s: f64) -> String {
     // Both turn about the middle of the base's upper face, on which the block lies.
     format!(
         "(title: \"plane\", time: (step_s: {step_s:e}, end_s: {END_S}), gravity_m_s2: (0, 0, -{G}),
           materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.2, density_kg_m3: 2500)],
           blocks: [
-            (name: \"base\", material: \"rock\", body: Fixed, turns: [(axis: (0, 1, 0), angle_deg: {dip_deg})],
+            (name: \"base\", material: \"rock\", body: {base}, turns: [(axis: (0, 1, 0), angle_deg: {dip_deg})],
              shape: Hexahedron(corners_m: ((-3, -3, -0.5), (3, -3, -0.5), (3, 3, -0.5), (-3, 3, -0.5),
                                            (-3, -3, 0), (3, -3, 0), (3, 3, 0), (-3, 3, 0)), cells: (3, 3, 1))),
             (name: \"block\", material: \"rock\", body: Rigid, turns: [(axis: (0, 1, 0), angle_deg: {dip_deg})],
@@ -134,50 +134,48 @@ fn a_block_on_a_plane_slides_where_three_accelerations_drive_it() {
         let what = |what: &str| {
             format!("{what}, dip {dip_deg}°, φ {friction_deg}°, {x}, {y} and {z} g along x, y and z")
         };
-        let errors = [1e-4, 5e-5].map(|step_s| {
+        for (base, step_s) in [("Fixed", 2e-4), ("Fixed", 5e-5), ("Elastic", 2e-4)] {
             let steps = (END_S / step_s).round() as usize;
             let exact = by_equation(&sines, (step_s, steps), |felt| {
                 let pressed = -felt.dot(&normal);
                 assert!(pressed > 0.0, "the block lifts off");
                 (felt + pressed * normal, friction * pressed)
             });
-            let mut simulation = shaken(&on_a_plane(dip_deg, friction_deg, step_s), &sines);
+            let mut simulation = shaken(&on_a_plane(base, dip_deg, friction_deg, step_s), &sines);
             simulation.settle(&Settle::new(1e-5, 40_000)).unwrap();
             let found = slips(&mut simulation, [BlockId(1), BlockId(0)], steps);
             let (error_m, largest_m) = farthest(&found, &exact);
-            // A block that sticks follows its base half a step late: less than a step's acceleration, which it keeps while it slides.
-            let largest_m_s2 =
-                (0..1000).map(|i| base_m_s2(&sines, 1e-3 * f64::from(i)).norm()).fold(0.0, f64::max);
             row(
                 CASE,
-                &what(&format!("largest error of the slip, at most {largest_m:.4} m, Δt = {step_s:e} s [m]")),
-                error_m,
-                AtMost(step_s * largest_m_s2 * END_S),
+                &what(&format!(
+                    "largest error of the slip over the largest slip, {base} base, Δt = {step_s:e} s"
+                )),
+                error_m / largest_m,
+                AtMost(PROMISED),
             );
             let label = verdict::label(&simulation, None);
             assert_eq!(label.word, LabelWord::Accurate, "{:?}", label.reasons);
-            error_m
-        });
-        row(CASE, &what("order of this error in the step"), (errors[0] / errors[1]).log2(), Near(1.0, 0.35));
+        }
     }
 }
 
 #[test]
-fn a_block_that_sticks_follows_its_base_half_a_step_late() {
+fn a_block_that_sticks_follows_its_base() {
     let sines = [(0.1, 2.0), (0.0, 1.0), (0.0, 1.0)];
     // ∫ a dt at its largest, after half a period.
     let fastest_m_s = 0.2 * G / (TAU * 2.0);
     for step_s in [2e-4, 5e-5] {
-        let mut simulation = shaken(&on_a_plane(0.0, 30.0, step_s), &sines);
+        let mut simulation = shaken(&on_a_plane("Fixed", 0.0, 30.0, step_s), &sines);
         simulation.settle(&Settle::new(1e-5, 40_000)).unwrap();
         let found = slips(&mut simulation, [BlockId(1), BlockId(0)], (0.3 / step_s).round() as usize);
         let lag_m = found.iter().map(|u| u.norm()).fold(0.0, f64::max);
-        // The velocity of a base at the end of a step is its mean over the step; the mean of a sine over a step, and friction, are off by far less.
+        // Once it followed half a step late, by 0.5. Its mean velocity in a step is that of both ends, which differs from that of a sine by
+        // (2π f Δt)²/12; and the block leans on its contact, by far less than it sinks.
         row(
             CASE,
             &format!("slip of a block that sticks, over the fastest base in a step, Δt = {step_s:e} s"),
             lag_m / (fastest_m_s * step_s),
-            Near(0.5, 1e-3),
+            AtMost(5e-3),
         );
     }
 }
@@ -186,7 +184,7 @@ fn a_block_that_sticks_follows_its_base_half_a_step_late() {
 const WEDGE_DIP_DEG: f64 = 50.0;
 
 /// The wedge of `scenes/wedge_two_planes.ron` on a base that is shaken.
-fn on_two_planes(friction_deg: f64, step_s: f64) -> String {
+fn on_two_planes(friction: &str, penalty_pa: f64, step_s: f64) -> String {
     let n = normals();
     let beyond =
         |n: Vec3| format!("Beyond(point_m: (10.5, 0, 5.625), normal: ({:e}, {:e}, {:e})),", -n.x, -n.y, -n.z);
@@ -205,7 +203,7 @@ fn on_two_planes(friction_deg: f64, step_s: f64) -> String {
             fixed: [{}{}],
           )],
           supports: [{held}],
-          contact: Potential(penalty_pa: 2e9, potential: Smooth(reference_m: 1), friction: (friction_deg: {friction_deg}), restitution: 0.3))",
+          contact: Potential(penalty_pa: {penalty_pa:e}, potential: Smooth(reference_m: 1), friction: ({friction}), restitution: 0.3))",
         beyond(n[0]),
         beyond(n[1])
     )
@@ -220,46 +218,81 @@ fn normals() -> [Vec3; 2] {
     })
 }
 
-#[test]
-fn a_wedge_slides_along_its_line_under_three_accelerations() {
-    // Friction so low that it never sticks: friction across the line, which the equation leaves out, may bear a part of it then.
-    let (step_s, friction_deg) = (2e-4, 25.0);
+/// Slips of a wedge along its line, by the run and by the equation, after each step [m], and whether the run is called accurate.
+fn slips_of_a_wedge(
+    sines: &Sines,
+    (friction_deg, spring): (f64, &str),
+    (penalty_pa, step_s): (f64, f64),
+) -> (Vec<f64>, Vec<f64>, LabelWord) {
     let steps = (WEDGE_END_S / step_s).round() as usize;
     let [a, b] = normals();
     let mut line = a.cross(&b).normalize();
     line *= -line.z.signum();
     let friction = f64::to_radians(friction_deg).tan();
+    let exact = by_equation(sines, (step_s, steps), |felt| {
+        let along = felt.dot(&line) * line;
+        // felt − along = −(N_a a + N_b b): two equations for the pressures of the two planes.
+        let (across, cos) = (along - felt, a.dot(&b));
+        let [on_a, on_b] = [a, b].map(|n| across.dot(&n));
+        let [n_a, n_b] = [on_a - cos * on_b, on_b - cos * on_a].map(|n| n / (1.0 - cos * cos));
+        assert!(n_a > 0.0 && n_b > 0.0, "the wedge leaves a plane: {n_a}, {n_b}");
+        (along, friction * (n_a + n_b))
+    });
+    let law = format!("friction_deg: {friction_deg}{spring}");
+    let mut simulation = shaken(&on_two_planes(&law, penalty_pa, step_s), sines);
+    let wedge = simulation.blocks().ids().find(|&id| simulation.shape(id).is_free()).expect("a wedge");
+    let base = BlockId(u32::from(wedge == BlockId(0)));
+    let found = slips(&mut simulation, [wedge, base], steps);
+    let label = verdict::label(&simulation, None);
+    let along = |slips: &[Vec3]| slips.iter().map(|u| u.dot(&line)).collect();
+    (along(&found), along(&exact), label.word)
+}
+
+#[test]
+fn a_wedge_slides_along_its_line_under_three_accelerations() {
     for sines in [[(0.3, 2.0), (0.1, 3.0), (0.1, 4.0)], [(0.25, 3.0), (0.15, 2.0), (-0.2, 1.0)]] {
-        let exact = by_equation(&sines, (step_s, steps), |felt| {
-            let along = felt.dot(&line) * line;
-            // felt − along = −(N_a a + N_b b): two equations for the pressures of the two planes.
-            let (across, cos) = (along - felt, a.dot(&b));
-            let [on_a, on_b] = [a, b].map(|n| across.dot(&n));
-            let [n_a, n_b] = [on_a - cos * on_b, on_b - cos * on_a].map(|n| n / (1.0 - cos * cos));
-            assert!(n_a > 0.0 && n_b > 0.0, "the wedge leaves a plane: {n_a}, {n_b}");
-            (along, friction * (n_a + n_b))
-        });
-        let mut simulation = shaken(&on_two_planes(friction_deg, step_s), &sines);
-        let wedge = simulation.blocks().ids().find(|&id| simulation.shape(id).is_free()).expect("a wedge");
-        let base = BlockId(u32::from(wedge == BlockId(0)));
-        let found = slips(&mut simulation, [wedge, base], steps);
-        let (error_m, largest_m) = farthest(&found, &exact);
+        let (found, exact, label) = slips_of_a_wedge(&sines, (25.0, ""), (2e9, 2e-4));
         let [x, y, z] = sines.map(|(part, _)| part);
-        let what =
-            |what: &str| format!("{what}, wedge, φ {friction_deg}°, {x}, {y} and {z} g along x, y and z");
+        let error_m = found.iter().zip(&exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let largest_m = exact.iter().copied().fold(0.0, f64::max);
         row(
             CASE,
-            &what("largest error of the slip over the largest slip"),
+            &format!(
+                "largest error of the slip over the largest slip, wedge, φ 25°, {x}, {y} and {z} g along x, y and z"
+            ),
             error_m / largest_m,
             AtMost(PROMISED),
         );
-        row(
-            CASE,
-            &what("slip along the line after 0.4 s [m]"),
-            found[steps - 1].dot(&line),
-            Within(exact[steps - 1].dot(&line), PROMISED),
-        );
-        let label = verdict::label(&simulation, None);
-        assert_eq!(label.word, LabelWord::Accurate, "{:?}", label.reasons);
+        assert_eq!(label, LabelWord::Accurate);
+    }
+}
+
+/// While a wedge rests, friction may point across its line of sliding, too, and presses it into its planes: Coulomb's law leaves open how much of
+/// that there is. The equation has none. Joints with shear springs lose it within the stretch of their springs, 0.3 % of the slip, and follow the
+/// equation; friction on velocities keeps it while the wedge rests, which therefore slides later, and not as far.
+#[test]
+fn a_wedge_that_sticks_between_slips_follows_the_equation_if_its_joints_have_shear_springs() {
+    for sines in [
+        [(0.3, 2.0), (0.1, 3.0), (0.1, 4.0)],
+        [(0.25, 3.0), (0.15, 2.0), (-0.2, 1.0)],
+        [(0.3, 4.0), (0.0, 3.0), (0.1, 4.0)],
+    ] {
+        let [x, y, z] = sines.map(|(part, _)| part);
+        for (law, spring, answer) in [
+            ("shear springs of 1e9 Pa/m", ", shear_penalty_pa_m: 1e9", Near(0.0, 1e-2)),
+            ("friction on velocities", "", Near(-0.03, 0.03)),
+        ] {
+            let (found, exact, label) = slips_of_a_wedge(&sines, (42.0, spring), (2e10, 5e-5));
+            let (found_m, exact_m) = (found[found.len() - 1], exact[exact.len() - 1]);
+            row(
+                CASE,
+                &format!(
+                    "slip over that of the equation, less 1, wedge, φ 42°, {law}, {x}, {y} and {z} g along x, y and z"
+                ),
+                found_m / exact_m - 1.0,
+                answer,
+            );
+            assert_eq!(label, LabelWord::Accurate);
+        }
     }
 }

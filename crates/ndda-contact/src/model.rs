@@ -95,8 +95,10 @@ pub struct Body {
     pub torque_n_m: Vec3,
     /// Mass centre [m].
     pub center: Vec3,
-    /// Its velocity [m/s].
+    /// Its velocity at the start of the step [m/s].
     pub velocity_m_s: Vec3,
+    /// By how much that changes in the step where the block moves as prescribed [m/s].
+    pub prescribed_change_m_s: Vec3,
     /// Rate of rotation [rad/s].
     pub spin_rad_s: Vec3,
     /// Whether it deforms, so that its surface answers to forces as [`Deformation`] says.
@@ -117,9 +119,9 @@ impl Body {
         }
     }
 
-    /// Takes the velocities to the end of a step under the loads.
+    /// Takes the velocities to the end of a step under the loads, or as prescribed.
     pub fn advance_velocity(&mut self, dt_s: f64) {
-        self.velocity_m_s += dt_s / self.mass_kg * self.load_n;
+        self.velocity_m_s += self.prescribed_change_m_s + dt_s / self.mass_kg * self.load_n;
         self.spin_rad_s += dt_s * (self.inverse_inertia * self.torque_n_m);
     }
 

@@ -5,6 +5,7 @@ use ndda_mesh::Vec3;
 use crate::bodies::congruent_groups::NodeSlices;
 use crate::bodies::context::StepContext;
 use crate::bodies::prototype::Prototype;
+use crate::bodies::record::end_velocity;
 use crate::bodies::report::BlockReport;
 
 /// A block that is held as a whole.
@@ -30,7 +31,7 @@ impl FixedBody {
         out.iter_mut().zip(&self.anchor).for_each(|(x, anchor)| *x = anchor + to);
     }
 
-    /// Takes the place that is prescribed for the end of the step, and reports what that took.
+    /// Takes the place and the velocity that are prescribed for the end of the step, and reports what that took.
     pub(crate) fn step(
         &mut self,
         shape: &Prototype,
@@ -51,7 +52,10 @@ impl FixedBody {
         }
         let to = shape.displacement_as_a_whole(context.end_s);
         let increment = to - shape.displacement_as_a_whole(context.time_s);
-        let (old, velocity) = (nodes.velocity[0], increment / context.dt_s);
+        let (old, velocity) = (
+            nodes.velocity[0],
+            end_velocity(shape, shape.motion_as_a_whole(), (context.time_s, context.end_s)),
+        );
         // Its own inertia is moved at the mean of both velocities, so that its kinetic energy is the work done on it.
         let inertia = shape.operator.mass_kg * (velocity - old);
         report.motion_work_j = report.reaction.dot(&increment) + 0.5 * inertia.dot(&(velocity + old));

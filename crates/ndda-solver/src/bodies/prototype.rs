@@ -250,14 +250,14 @@ impl Prototype {
         self.damping.weights(weights)
     }
 
-    /// How far a block that is held as a whole is displaced at time t [m]; the last motion counts.
-    pub(crate) fn displacement_as_a_whole(&self, time_s: f64) -> Vec3 {
-        self.supports.motions.last().map_or_else(Vec3::zeros, |motion| motion.displacement(time_s))
+    /// The motion of a block that is held as a whole: the last counts.
+    pub(crate) fn motion_as_a_whole(&self) -> Option<usize> {
+        self.supports.motions.len().checked_sub(1)
     }
 
-    /// How fast it moves just after time t [m/s].
-    pub(crate) fn velocity_as_a_whole(&self, time_s: f64) -> Vec3 {
-        self.supports.motions.last().map_or_else(Vec3::zeros, |motion| motion.velocity(time_s))
+    /// How far a block that is held as a whole is displaced at time t [m].
+    pub(crate) fn displacement_as_a_whole(&self, time_s: f64) -> Vec3 {
+        self.supports.motions.last().map_or_else(Vec3::zeros, |motion| motion.displacement(time_s))
     }
 
     /// Whether nothing holds the block, so that its momentum changes by outside forces only.
@@ -330,6 +330,7 @@ impl Prototype {
             torque_n_m: Vec3::zeros(),
             center: Vec3::zeros(),
             velocity_m_s: Vec3::zeros(),
+            prescribed_change_m_s: Vec3::zeros(),
             spin_rad_s: Vec3::zeros(),
             deforms: matches!(self.kind, BodyKind::Elastic | BodyKind::Affine),
         }

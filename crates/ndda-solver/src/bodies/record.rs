@@ -96,6 +96,12 @@ pub(crate) fn checked_speed(shape: &Prototype, velocity: &[Vec3]) -> Result<f64,
     Ok(speed_m_s)
 }
 
+/// Velocity of a prescribed motion at the end of a step [m/s]: zero where there is none, and while a scene settles, for which time stands still.
+pub(crate) fn end_velocity(shape: &Prototype, motion: Option<usize>, (start_s, end_s): (f64, f64)) -> Vec3 {
+    let moves = end_s > start_s;
+    motion.filter(|_| moves).map_or(Vec3::zeros(), |m| shape.supports.motions[m].velocity(end_s))
+}
+
 /// Displacement of a prescribed motion, zero where there is none [m].
 pub(crate) fn displacement_at(shape: &Prototype, motion: Option<usize>, time_s: f64) -> Vec3 {
     motion.map_or(Vec3::zeros(), |m| shape.supports.motions[m].displacement(time_s))

@@ -7,6 +7,7 @@ use ndda_mesh::{BlockId, Vec3};
 use rayon::prelude::*;
 
 use crate::bodies::kind::BodyKind;
+use crate::bodies::record::end_velocity;
 use crate::error::StepError;
 use crate::step::deformation::StepDeformation;
 use crate::step::first_step::seen;
@@ -85,10 +86,8 @@ impl Simulation {
             body.spin_rad_s = motion.spin_rad_s;
             if held {
                 if shape.kind == BodyKind::Fixed {
-                    // Where it goes in this step is known already.
-                    let increment =
-                        shape.displacement_as_a_whole(end_s) - shape.displacement_as_a_whole(now_s);
-                    body.velocity_m_s = increment / self.part_s;
+                    let end_m_s = end_velocity(shape, shape.motion_as_a_whole(), (now_s, end_s));
+                    body.prescribed_change_m_s = end_m_s - motion.velocity_m_s;
                 }
                 continue;
             }

@@ -233,7 +233,8 @@ impl Simulation {
         if shape.kind == BodyKind::Fixed {
             // It moves as prescribed from the start: contact is evaluated ahead of where it is, and facets slip by its velocity.
             let nodes = self.problem.blocks.nodes_of(block);
-            self.state.velocity[nodes].fill(shape.velocity_as_a_whole(0.0));
+            let motion = shape.supports.motions.last();
+            self.state.velocity[nodes].fill(motion.map_or_else(Vec3::zeros, |motion| motion.velocity(0.0)));
             return;
         }
         let nodes = self.problem.blocks.nodes_of(block);

@@ -16,6 +16,9 @@ impl ContactDamping {
         self.changes.resize(bodies.len(), Change::default());
         for (block, (change, body)) in self.changes.iter_mut().zip(bodies).enumerate() {
             *change = match history.bodies.get(block) {
+                _ if body.mass_kg.is_infinite() => {
+                    Change { velocity_m_s: body.prescribed_change_m_s, ..Change::default() }
+                }
                 Some(memory) => memory.change_by_others(body, dt_s),
                 None => Change {
                     velocity_m_s: dt_s / body.mass_kg * body.load_n,

@@ -6,7 +6,7 @@ use super::*;
 use crate::bodies::congruent_groups::{NodeSlices, Nodes};
 use crate::bodies::context::StepContext;
 use crate::bodies::prototype::Prototype;
-use crate::bodies::record::checked_speed;
+use crate::bodies::record::{checked_speed, end_velocity};
 use crate::bodies::spin_torque::{Path, spin_torque};
 use crate::error::BlockError;
 
@@ -125,8 +125,8 @@ impl ElasticBody {
         Ok(())
     }
 
-    /// Gives moved nodes the mean velocity of the step, which does not ring where the table has a kink. What that changes of momentum
-    /// and kinetic energy is an impulse and work of what moves them.
+    /// Gives moved nodes the velocity that is prescribed for the end of the step: that of the integrator would ring where the table has a kink.
+    /// What that changes of momentum and kinetic energy is an impulse and work of what moves them.
     pub(super) fn prescribe_velocities(
         &mut self,
         shape: &Prototype,
@@ -136,8 +136,8 @@ impl ElasticBody {
         self.predicted.fill(Vec3::zeros());
         for (_, held) in moved(shape) {
             let i = held.node as usize;
-            let mean = self.correction[i] / context.dt_s;
-            self.predicted[i] = onto(&held.held, &(mean - self.load[i]));
+            let end_m_s = end_velocity(shape, held.motion, (context.time_s, context.end_s));
+            self.predicted[i] = onto(&held.held, &(end_m_s - self.load[i]));
             let a = self.elastic[i];
             self.elastic[i] -= onto(&held.held, &a);
         }

@@ -254,6 +254,8 @@ impl FrictionPatches {
                     }
                 }
                 body.advance_velocity(scene.input.dt_s);
+            } else {
+                body.velocity_m_s += body.prescribed_change_m_s;
             }
         };
         bodies.par_iter_mut().enumerate().with_min_len(GRAIN_BODIES).for_each(advance);
