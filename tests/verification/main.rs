@@ -1,5 +1,6 @@
 //! Runs against closed forms and against each other: one file per case.
 
+mod accelerated_frame;
 mod bar_under_traction;
 mod bars_that_collide;
 mod bedded_bar;

@@ -96,10 +96,14 @@ pub(crate) fn checked_speed(shape: &Prototype, velocity: &[Vec3]) -> Result<f64,
     Ok(speed_m_s)
 }
 
+/// Part of a step before its end at which the velocity of a prescribed motion counts as that at its end: a kink there belongs to the next step.
+const BEFORE_END: f64 = 1e-6;
+
 /// Velocity of a prescribed motion at the end of a step [m/s]: zero where there is none, and while a scene settles, for which time stands still.
 pub(crate) fn end_velocity(shape: &Prototype, motion: Option<usize>, (start_s, end_s): (f64, f64)) -> Vec3 {
     let moves = end_s > start_s;
-    motion.filter(|_| moves).map_or(Vec3::zeros(), |m| shape.supports.motions[m].velocity(end_s))
+    let at_s = end_s - BEFORE_END * (end_s - start_s);
+    motion.filter(|_| moves).map_or(Vec3::zeros(), |m| shape.supports.motions[m].velocity(at_s))
 }
 
 /// Displacement of a prescribed motion, zero where there is none [m].
