@@ -24,22 +24,27 @@ fn slope() -> f64 {
     (0.5 * WIDTH_M - INSIDE_M) / (0.5 * HEIGHT_M)
 }
 
-/// The column on level ground under tilted gravity, with the penalty of this M.
-fn column(m: f64) -> Simulation {
-    let secant2 = 1.0 + slope() * slope();
-    let normal_n = DENSITY * G * HEIGHT_M * WIDTH_M / secant2.sqrt();
-    let penalty_pa = normal_n * HEIGHT_M * secant2 / (18.0 * INSIDE_M.powi(3) * m);
-    let (along, down) = (G * slope() / secant2.sqrt(), G / secant2.sqrt());
+/// The column on level ground under gravity and forces, with a penalty.
+fn column_under(gravity_m_s2: [f64; 2], forces: &str, penalty_pa: f64) -> Simulation {
+    let [along, up] = gravity_m_s2;
     simulation(&format!(
-        "(title: \"column\", time: (step_s: 1e-3, end_s: 1), gravity_m_s2: ({along}, 0, {}),
+        "(title: \"column\", time: (step_s: 1e-3, end_s: 1), gravity_m_s2: ({along}, 0, {up}),
           materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: {DENSITY})],
           blocks: [
               (name: \"floor\", material: \"rock\", body: Fixed, shape: Box(size_m: (4, 3, 1), cells: (1, 1, 1)), at_m: (-1, -1, -1)),
               (name: \"column\", material: \"rock\", body: Rigid, shape: Box(size_m: ({WIDTH_M}, 1, {HEIGHT_M}), cells: (1, 1, 1))),
           ],
-          contact: Potential(penalty_pa: {penalty_pa:e}, potential: Smooth(reference_m: 1), friction: (friction_deg: 60)))",
-        -down
+          forces: [{forces}],
+          contact: Potential(penalty_pa: {penalty_pa:e}, potential: Smooth(reference_m: 1), friction: (friction_deg: 60)))"
     ))
+}
+
+/// The column under tilted gravity, with the penalty of this M.
+fn column(m: f64) -> Simulation {
+    let secant2 = 1.0 + slope() * slope();
+    let normal_n = DENSITY * G * HEIGHT_M * WIDTH_M / secant2.sqrt();
+    let penalty_pa = normal_n * HEIGHT_M * secant2 / (18.0 * INSIDE_M.powi(3) * m);
+    column_under([G * slope() / secant2.sqrt(), -G / secant2.sqrt()], "", penalty_pa)
 }
 
 /// Tilt of the column [rad].
@@ -87,4 +92,25 @@ fn beyond_four_parts_of_27_it_falls_although_its_weight_acts_inside_the_edge() {
     // A rigid edge lets it go where its weight has passed the edge.
     let over = INSIDE_M / (0.5 * HEIGHT_M);
     row("leaning column", "tilt at M = 0.185 [rad]", tilt(&simulation).abs(), AtLeast(over));
+}
+
+/// A force F at a height h_F on the far side of the column, which is pushed towards the edge until the line of weight and force is d inside: of
+/// the tilt, the weight moves by H/2, and the force, whose point sinks, by (B − d) F/N.
+#[test]
+fn a_column_that_is_pushed_leans_as_one_under_tilted_gravity() {
+    let weight_n = DENSITY * G * HEIGHT_M * WIDTH_M;
+    let (at_m, m) = (3.0, 0.1);
+    let force_n = weight_n * (0.5 * WIDTH_M - INSIDE_M) / at_m;
+    let arm_m = 0.5 * HEIGHT_M + (WIDTH_M - INSIDE_M) * force_n / weight_n;
+    let force = format!("(block: \"column\", at_m: (0, 0.5, {at_m}), force_n: ({force_n}, 0, 0))");
+    let penalty_pa = weight_n * arm_m / (9.0 * INSIDE_M.powi(3) * m);
+    let mut simulation = column_under([0.0, -G], &force, penalty_pa);
+    simulation.settle(&Settle::new(1e-6, 100_000)).unwrap();
+    let exact = (1.0 - left(m)) * INSIDE_M / arm_m;
+    row(
+        "leaning column",
+        "tilt of a column that is pushed, at M = 0.1 [rad]",
+        tilt(&simulation),
+        Within(exact, 0.02),
+    );
 }

@@ -179,7 +179,7 @@ fn vec3(v: [f64; 3]) -> Vec3 {
 }
 
 /// No table is a constant load.
-fn table(rows: &[scene::FactorRow]) -> Option<Table> {
+pub(crate) fn table(rows: &[scene::FactorRow]) -> Option<Table> {
     let rows: Vec<_> = rows.iter().map(|row| (row.time_s, row.factor)).collect();
     (!rows.is_empty()).then_some(Table { rows })
 }

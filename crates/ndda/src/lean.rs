@@ -1,17 +1,18 @@
-//! Blocks whose weight acts near the edge of their base, where contact gives way and lets them lean, or fall.
+//! Blocks that press on their base near its edge, where contact gives way and lets them lean, or fall.
 //!
-//! A weight N that acts d inside the edge presses on a strip of 3 d. With the height h of the mass centre above the base, the width w of the base
-//! along the edge, and α between gravity and the normal of the base, the tilt takes the part 1 − x of d, x² (1 − x) = M,
-//! M = N h L₀/(9 k_n w d³ cos²α). Beyond M = 4/27 there is no such x, and the block falls, although a rigid edge would hold it.
+//! A force N whose line meets the base d inside an edge presses on a strip of 3 d. With the width w of the base along the edge, the tilt takes the
+//! part 1 − x of d, x² (1 − x) = M, M = N h L₀/(9 k_n w d³). h is how far the line moves towards the edge by the tilt: h_c/cos²α for a weight whose
+//! mass centre is h_c above a base that dips by α. Beyond M = 4/27 there is no such x, and the block falls, although a rigid edge would hold it.
 
 use std::fmt;
 
-use ndda_io::scene::{Contact, Potential, Scene, matches};
+use ndda_io::scene::{Contact, Force, Potential, Scene, matches};
 use ndda_mesh::geometry::{Aabb, triangle_area_vector};
 use ndda_mesh::planar::{clipped, hull_of_sorted, turn};
 use ndda_mesh::{BlockId, Vec3};
 use ndda_solver::{BodyKind, Simulation};
 
+use crate::build;
 use crate::numbers::length;
 
 /// M beyond which the weight moves by more than 6 % of d.
@@ -79,11 +80,10 @@ pub fn worst(scene: &Scene, simulation: &Simulation) -> Option<Lean> {
         return None;
     };
     let gravity = Vec3::from(scene.gravity_m_s2);
-    // Blocks of rock that is cut hold each other.
     let is_free = |block: &BlockId| {
         let name = &simulation.blocks().names[block.index()];
         let is_held = scene.supports.iter().any(|support| matches(&support.block, name));
-        simulation.shape(*block).kind != BodyKind::Fixed && !is_held && block.index() < scene.blocks.len()
+        simulation.shape(*block).kind != BodyKind::Fixed && !is_held
     };
     let free: Vec<BlockId> = simulation.blocks().ids().filter(is_free).collect();
     if gravity == Vec3::zeros() || free.len() > MOST_BLOCKS {
@@ -91,27 +91,60 @@ pub fn worst(scene: &Scene, simulation: &Simulation) -> Option<Lean> {
     }
     let lean = |block: BlockId| {
         let base = Base::of(simulation, block, &gravity)?;
-        let inside_m = base.inside_m()?;
-        let normal_n = simulation.shape(block).operator.mass_kg * gravity.norm() * base.cosine;
-        let m = normal_n * base.height_m * reference_m
-            / (9.0 * penalty_pa * inside_m.1 * inside_m.0.powi(3) * base.cosine.powi(2));
-        let name = simulation.blocks().names[block.index()].clone();
-        (m > MOST).then(|| Lean {
-            block: name,
-            inside_m: inside_m.0,
-            m,
-            penalty_pa: penalty_pa * m / ADVISED,
-        })
+        let pressed = pulls(scene, simulation, block).into_iter().filter_map(|pulls| base.pressed(&pulls));
+        let (m, inside_m) = pressed
+            .map(|p| {
+                let m =
+                    p.normal_n * p.arm_m * reference_m / (9.0 * penalty_pa * p.width_m * p.inside_m.powi(3));
+                (m, p.inside_m)
+            })
+            .max_by(|a, b| a.0.total_cmp(&b.0))?;
+        let block = simulation.blocks().names[block.index()].clone();
+        (m > MOST).then(|| Lean { block, inside_m, m, penalty_pa: penalty_pa * m / ADVISED })
     };
     free.into_iter().filter_map(lean).max_by(|a, b| a.m.total_cmp(&b.m))
 }
 
-/// Where a block rests on others, seen from its foot: where the line of its weight meets its base.
+/// Where a force acts [m], and the force [N].
+type Pull = (Vec3, Vec3);
+
+/// The weight and the forces of the scene on a block, at the start and at each row of their tables.
+fn pulls(scene: &Scene, simulation: &Simulation, block: BlockId) -> Vec<Vec<Pull>> {
+    let blocks = simulation.blocks();
+    let shape = simulation.shape(block);
+    let centre = shape.operator.center(&simulation.start_position()[blocks.nodes_of(block)]);
+    let weight = (centre, shape.operator.mass_kg * Vec3::from(scene.gravity_m_s2));
+    let name = &blocks.names[block.index()];
+    let forces: Vec<_> = scene.forces.iter().filter(|force| matches(&force.block, name)).collect();
+    let rows = forces.iter().flat_map(|force| force.factor.iter().map(|row| row.time_s));
+    let at = |time_s: f64| {
+        let pull = |force: &&Force| {
+            let place = force.at_m.map_or(centre, |at_m| Vec3::from(at_m) - blocks.origin_m);
+            let factor = build::table(&force.factor).map_or(1.0, |table| table.at(time_s));
+            (place, factor * Vec3::from(force.force_n))
+        };
+        std::iter::once(weight).chain(forces.iter().map(pull)).collect()
+    };
+    std::iter::once(0.0).chain(rows).map(at).collect()
+}
+
+/// Where a block rests on others.
 struct Base {
-    /// Corners of what it rests on, in two axes of the base.
+    /// Corners of what it rests on, in two axes of the base, from below the mass centre.
     points: Vec<[f64; 2]>,
-    height_m: f64,
-    cosine: f64,
+    origin: Vec3,
+    /// The axes, and the normal out of the block.
+    axes: [Vec3; 3],
+}
+
+/// What presses on a base near an edge.
+struct Pressed {
+    normal_n: f64,
+    /// d and w [m].
+    inside_m: f64,
+    width_m: f64,
+    /// How far the line of the force moves towards the edge for a tilt of one radian [m].
+    arm_m: f64,
 }
 
 /// Triangles of a block at the start, with their normals.
@@ -143,10 +176,10 @@ impl Base {
         if cosine < STEEPEST || height_m <= 0.0 {
             return None;
         }
-        let foot = centre + height_m / cosine * down;
+        let origin = centre + height_m * normal;
         let across = normal.cross(&Vec3::ith(normal.iamin(), 1.0)).normalize();
-        let axes = [across, normal.cross(&across)];
-        let flat = |x: &Vec3| axes.map(|axis| axis.dot(&(x - foot)));
+        let axes = [across, normal.cross(&across), normal];
+        let flat = |x: &Vec3| [0, 1].map(|k| axes[k].dot(&(x - origin)));
         let is_on = |plane: &([Vec3; 3], Vec3), other: &([Vec3; 3], Vec3)| {
             let normal = plane.1.normalize();
             let faces = normal.dot(&other.1.normalize()) < -SAME_DIRECTION;
@@ -171,25 +204,47 @@ impl Base {
                 }
             }
         }
-        Some(Self { points: hull(points), height_m, cosine })
+        Some(Self { points: hull(points), origin, axes })
     }
 
-    /// Distance of the foot from the nearest edge, and width of the base along that [m]; none where it lies outside, or the strip at the edge is all of the base.
-    fn inside_m(&self) -> Option<(f64, f64)> {
+    /// What forces press the base by; none where they pull, where their line meets it outside, or where the strip at the edge is all of it.
+    ///
+    /// With heights h_i, places s_i, normal parts N_i and tangential parts T_i of the forces, the line meets the base at Σ (N_i s_i + h_i T_i)/N.
+    /// A tilt of one radian about the edge with the outward direction e there moves that along e by Σ (N_i h_i − (s_i·e)(T_i·e))/N.
+    fn pressed(&self, pulls: &[Pull]) -> Option<Pressed> {
+        let [one, two, normal] = &self.axes;
+        let flat = |v: &Vec3| Vec3::new(one.dot(v), two.dot(v), 0.0);
+        let normal_n: f64 = pulls.iter().map(|(_, f)| f.dot(normal)).sum();
+        let parts = || {
+            pulls.iter().map(|(x, f)| {
+                (flat(&(x - self.origin)), (self.origin - x).dot(normal), f.dot(normal), flat(f))
+            })
+        };
+        let foot = parts().map(|(s, h, n, t)| n * s + h * t).sum::<Vec3>() / normal_n;
+        let (inside_m, along, width_m) = self.inside(&foot)?;
+        let out = Vec3::new(along.y, -along.x, 0.0);
+        let arm = |(s, h, n, t): (Vec3, f64, f64, Vec3)| n * h - (s - foot).dot(&out) * t.dot(&out);
+        let arm_m = parts().map(arm).sum::<f64>() / normal_n;
+        (normal_n > 0.0 && arm_m > 0.0).then_some(Pressed { normal_n, inside_m, width_m, arm_m })
+    }
+
+    /// Distance of a foot from the nearest edge, the direction of that and the width of the base along it [m]; none where it lies outside, or the strip at the edge
+    /// is all of the base.
+    fn inside(&self, foot: &Vec3) -> Option<(f64, Vec3, f64)> {
         let corners = &self.points;
         let edges = (0..corners.len()).map(|k| (corners[k], corners[(k + 1) % corners.len()]));
         let distance = |(a, b): ([f64; 2], [f64; 2])| {
-            let along = [b[0] - a[0], b[1] - a[1]];
-            let long = along[0].hypot(along[1]);
-            (turn(&a, &b, &[0.0; 2]) / long, [along[0] / long, along[1] / long])
+            let along = Vec3::new(b[0] - a[0], b[1] - a[1], 0.0);
+            (turn(&a, &b, &[foot.x, foot.y]) / along.norm(), along.normalize())
         };
         let (inside_m, along) = edges.map(distance).min_by(|a, b| a.0.total_cmp(&b.0))?;
-        let extent = |axis: [f64; 2]| {
-            let places = corners.iter().map(|x| axis[0] * x[0] + axis[1] * x[1]);
+        let extent = |axis: Vec3| {
+            let places = corners.iter().map(|x| axis.x * x[0] + axis.y * x[1]);
             places.clone().fold(f64::MIN, f64::max) - places.fold(f64::MAX, f64::min)
         };
-        let (width_m, across_m) = (extent(along), extent([-along[1], along[0]]));
-        (corners.len() > 2 && inside_m > 0.0 && 3.0 * inside_m < across_m).then_some((inside_m, width_m))
+        let (width_m, across_m) = (extent(along), extent(Vec3::new(-along.y, along.x, 0.0)));
+        (corners.len() > 2 && inside_m > 0.0 && 3.0 * inside_m < across_m)
+            .then_some((inside_m, along, width_m))
     }
 }
 
@@ -204,18 +259,23 @@ mod tests {
     use super::*;
     use crate::Model;
 
-    /// A column of 1 × 1 × 4 m, its lower corner so far from that of a floor, under gravity with a level part.
-    fn found(penalty_pa: f64, level_m_s2: f64, at_x_m: f64) -> Option<Lean> {
+    /// A column of 1 × 1 × 4 m, its lower corner so far from that of a floor, under gravity with a level part, and with forces.
+    fn pushed(penalty_pa: f64, level_m_s2: f64, at_x_m: f64, forces: &str) -> Option<Lean> {
         let text = format!(
             "(title: \"t\", time: (step_s: 1e-3, end_s: 1), gravity_m_s2: ({level_m_s2}, 0, -9.81),
              materials: [(name: \"rock\", young_pa: 2e10, poisson: 0.25, density_kg_m3: 2500)],
              blocks: [(name: \"floor\", material: \"rock\", body: Fixed, shape: Box(size_m: (4, 3, 1), cells: (2, 1, 1)), at_m: (-2, -1, -1)),
                  (name: \"column\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 4), cells: (1, 1, 1)), at_m: ({at_x_m}, 0, 0))],
+             forces: [{forces}],
              contact: Potential(penalty_pa: {penalty_pa}, potential: Smooth(reference_m: 1), friction: (friction_deg: 60)))"
         );
         let loaded = ndda_io::read::load_text("t.ron", &text, &[], None).unwrap();
         let scene = loaded.scene.clone();
         worst(&scene, &Model::new(loaded, std::path::Path::new(".")).unwrap().simulation)
+    }
+
+    fn found(penalty_pa: f64, level_m_s2: f64, at_x_m: f64) -> Option<Lean> {
+        pushed(penalty_pa, level_m_s2, at_x_m, "")
     }
 
     #[test]
@@ -231,6 +291,34 @@ mod tests {
         assert_eq!(found(1e10, 0.2 * 9.81, 0.0), None, "contact is stiff");
         assert_eq!(found(2e8, 0.0, 0.0), None, "its weight acts in the middle");
         assert_eq!(found(2e8, 0.3 * 9.81, 0.0), None, "its weight acts beyond the edge, so that it topples");
+    }
+
+    #[test]
+    fn a_force_moves_the_foot_of_a_weight_as_a_level_part_of_gravity_does() {
+        let level = found(2e8, 0.2 * 9.81, 0.0).unwrap();
+        let force_n = 2500.0 * 4.0 * 0.2 * 9.81;
+        // Through the mass centre; on a point at its height; with a factor over time; and where it pushes with half the force at twice the height.
+        for force in [
+            format!("(block: \"column\", force_n: ({force_n}, 0, 0))"),
+            format!("(block: \"column\", at_m: (0.5, 0.5, 2), force_n: ({force_n}, 0, 0))"),
+            format!(
+                "(block: \"col*\", force_n: ({force_n}, 0, 0), factor: [(time_s: 0, factor: 0), (time_s: 1, factor: 1), (time_s: 2, factor: 0.5)])"
+            ),
+        ] {
+            let pushed = pushed(2e8, 0.0, 0.0, &force).unwrap();
+            assert!(
+                (pushed.inside_m - 0.1).abs() < 1e-9 && (pushed.m / level.m - 1.0).abs() < 1e-9,
+                "{pushed:?}, {level:?}"
+            );
+        }
+        let high = format!("(block: \"column\", at_m: (0, 0.5, 4), force_n: ({}, 0, 0))", 0.5 * force_n);
+        let high = pushed(2e8, 0.0, 0.0, &high).unwrap();
+        // Arm: h for the weight, and 0.1 × 0.9 m for the force, which acts 0.9 m behind the foot.
+        let exact = 2500.0 * 4.0 * 9.81 * (2.0 + 0.1 * 0.9) / (9.0 * 2e8 * 1e-3);
+        assert!(
+            (high.inside_m - 0.1).abs() < 1e-9 && (high.m / exact - 1.0).abs() < 1e-9,
+            "{high:?}, {exact}"
+        );
     }
 
     #[test]
