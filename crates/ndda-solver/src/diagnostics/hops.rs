@@ -39,6 +39,10 @@ pub(crate) struct Hops {
     short: u32,
     /// Speed of the fastest node when one of these ended, the largest [m/s].
     short_m_s: f64,
+    /// The same of all flights that were hardly longer than the touch before, in which friction acted: a surface that vibrates may stick, although its
+    /// block moves on.
+    rubbing: u32,
+    rubbing_m_s: f64,
 }
 
 impl Hops {
@@ -68,9 +72,14 @@ impl Hops {
             self.stopped += 1;
             self.stopped_m_s = self.stopped_m_s.max(speed_m_s);
         }
-        if may_stop && self.flight_s < SHORT * self.touch_s {
+        let is_short = self.flight_s < SHORT * self.touch_s;
+        if may_stop && is_short {
             self.short += 1;
             self.short_m_s = self.short_m_s.max(speed_m_s);
+        }
+        if self.rubbed && is_short {
+            self.rubbing += 1;
+            self.rubbing_m_s = self.rubbing_m_s.max(speed_m_s);
         }
         (self.last_flight_s, self.flight_s, self.rubbed) = (self.flight_s, 0.0, false);
         (self.touch_s, self.push_m_s) = (0.0, Vec3::zeros());
@@ -81,9 +90,14 @@ impl Hops {
         self.most
     }
 
-    /// Flights that came after a touch in which friction acted and could stop the block, and the largest speed at which one ended [m/s].
-    pub(crate) fn with_friction(&self) -> (u32, f64) {
-        (self.stopped, self.stopped_m_s)
+    /// Flights that came after a touch in which friction acted and could stop the block, and the largest speed at which one ended [m/s]; of a block that
+    /// deforms, all short ones after a touch in which friction acted.
+    pub(crate) fn with_friction(&self, deforms: bool) -> (u32, f64) {
+        if deforms && self.rubbing > self.stopped {
+            (self.rubbing, self.rubbing_m_s)
+        } else {
+            (self.stopped, self.stopped_m_s)
+        }
     }
 
     /// Flights that were hardly longer than the touch before, in which friction acted and could stop the block, and the largest speed at which one ended [m/s].
@@ -142,12 +156,12 @@ mod tests {
             for drive in [RigidForcing::default(), on_ground, on_ground, RigidForcing::default(), on_ground] {
                 hops.add(1e-3, &drive);
             }
-            hops.with_friction()
+            [false, true].map(|deforms| hops.with_friction(deforms))
         };
-        assert_eq!(
-            [counted(true, 1.0), counted(false, 1.0), counted(true, 4.0)],
-            [(1, 1.0), (0, 0.0), (0, 0.0)]
-        );
+        assert_eq!(counted(true, 1.0), [(1, 1.0); 2]);
+        assert_eq!(counted(false, 1.0), [(0, 0.0); 2]);
+        // Too fast to be stopped as a whole, but a part of its surface may be.
+        assert_eq!(counted(true, 4.0), [(0, 0.0), (1, 4.0)]);
     }
 
     #[test]

@@ -348,6 +348,15 @@ mod tests {
     }
 
     #[test]
+    fn an_elastic_block_whose_face_hops_while_it_slides_is_sensitive() {
+        let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("../../scenes/extreme/elastic_block_stands.ron");
+        let set = ["gravity_ramp_s=0", "contact.penalty_pa=5e10", "output.frames=0"].map(String::from);
+        let summary = Run::new(Model::open(&file, &set).unwrap()).finish(&mut []).unwrap().summary;
+        assert_eq!(summary.label.word, LabelWord::Sensitive, "{:?}", summary.label.reasons);
+    }
+
+    #[test]
     fn two_blocks_have_no_twin_unless_one_is_asked_for() {
         let sliding = ["at_m: (0, 0, 0)"];
         for (sensitivity, has_twin) in [(Sensitivity::Auto, false), (Sensitivity::Always, true)] {

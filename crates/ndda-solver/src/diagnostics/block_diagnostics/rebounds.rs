@@ -22,11 +22,11 @@ impl BlockDiagnostics {
         (growing, short)
     }
 
-    /// Most hops of a block with friction between them that could stop it; hops that rounding may have made do not count, nor those that are slow beside the largest speed.
+    /// Most hops of a block with friction between them that could stop it, or the surface of a block that deforms; hops that rounding may have made do not count, nor those that are slow beside the largest speed.
     pub(crate) fn hops_with_friction(&self, largest_m_s: f64, rounding_j: f64) -> Worst {
         let mut worst = Worst::default();
         for (block, (balance, scale)) in self.balances.iter().zip(&self.scales).enumerate() {
-            let (hops, speed_m_s) = balance.hops.with_friction();
+            let (hops, speed_m_s) = balance.hops.with_friction(scale.deforms);
             let counts = speed_m_s > FAST * largest_m_s;
             if counts && 0.5 * scale.mass_kg * speed_m_s * speed_m_s > rounding_j {
                 worst.take(f64::from(hops), block);
