@@ -183,13 +183,15 @@ fn water(pressure_pa: [f64; 2]) -> String {
     format!("water: [{}{}], contact:", of("a", a), of("b", b))
 }
 
-/// The contact of a scene whose joints have these friction angles [°], cohesions and tensile strengths [Pa], all of which they keep.
+/// The contact of a scene whose joints have these friction angles [°], cohesions and tensile strengths [Pa], all of which they keep: limit equilibrium of perfectly plastic
+/// joints, which open at the apex of Mohr and Coulomb's line where their faces are pressed unevenly, and lose nothing by that.
 fn contact(joints: [(f64, f64, f64); 2]) -> String {
     let law = |name: &str, (friction_deg, cohesion_pa, tension_pa): (f64, f64, f64)| {
         let strength =
             format!("friction_deg: {friction_deg}, cohesion_pa: {cohesion_pa}, tension_pa: {tension_pa}");
+        let opens = if tension_pa > 0.0 { ", opening_m: 0.1" } else { "" };
         format!(
-            "(joint: \"{name}\", friction: (shear_penalty_pa_m: 1e9, {strength}, residual: ({strength}))), "
+            "(joint: \"{name}\", friction: (shear_penalty_pa_m: 1e9, {strength}, residual: ({strength}{opens}))), "
         )
     };
     let [a, b] = joints;
@@ -200,15 +202,12 @@ fn contact(joints: [(f64, f64, f64); 2]) -> String {
     )
 }
 
-/// What springs that hold across the line of a wedge may add: they are not pushed out of it, as friction on velocities is.
-const ACROSS: f64 = 0.02;
-
-/// F = Σ (c A + (N − p A) tan φ)/(W sin ψ). Limit equilibrium knows no moments: Mohr and Coulomb's line has to hold up to its apex, where joints are pulled by what their weight
-/// presses unevenly.
+/// F = Σ (c A + (N − p A) tan φ)/(W sin ψ), to 1 % for every wedge. Limit equilibrium knows no moments: Mohr and Coulomb's line has to hold up to its apex, also where joints open, since their
+/// weight presses them unevenly.
 #[test]
 fn random_wedges_with_cohesion_and_water_have_the_factors_of_limit_equilibrium() {
     let wanted = wanted(3);
-    let (mut state, mut done, mut pulled, mut worst) = (13, 0, 0, 0.0f64);
+    let (mut state, mut done, mut worst) = (13, 0, 0.0f64);
     while done < wanted {
         let mut random = || random(&mut state);
         let mut plane = || (30.0 + 40.0 * random(), 360.0 * random());
@@ -245,25 +244,15 @@ fn random_wedges_with_cohesion_and_water_have_the_factors_of_limit_equilibrium()
             kind(&safety)
         );
         assert_eq!(kind(&safety), Kind::Wedge, "{planes:?}");
-        let opened = safety.mechanism.as_ref().and_then(|how| how.opened.as_ref());
-        if let Some(opened) = opened.filter(|opened| opened.lowers_by > ERROR) {
-            // Such a wedge would topple if it could bear no more than that tension.
-            println!("pulled by more than c/tan φ on {:.0} % of its joints", 100.0 * opened.area_part);
-            assert!(lower < exact, "{lower} and {exact}");
-            pulled += 1;
-            done -= 1;
-            continue;
-        }
         worst = worst.max(off(&safety, exact));
     }
-    assert!(2 * pulled <= wanted, "{pulled} of {wanted} are pulled apart");
     row(
         "safety",
         &format!(
             "{wanted} random wedges with cohesion and water: limit equilibrium outside of the bracket by [-]"
         ),
         worst,
-        AtMost(ACROSS),
+        AtMost(ERROR),
     );
 }
 

@@ -44,7 +44,8 @@ pub(crate) fn holds(what: &str, safety: &Safety, exact: f64) {
     let (lower, upper) = bracket(safety);
     row("safety", &format!("{what}: lower end [-]"), lower, AtMost(exact));
     row("safety", &format!("{what}: upper end [-]"), upper, AtLeast(exact));
-    row("safety", &format!("{what}: middle [-]"), (lower * upper).sqrt(), Within(exact, ERROR));
+    row("safety", &format!("{what}: middle [-]"), (lower * upper).sqrt(), Within(exact, 0.5 * ERROR));
+    assert!(upper / lower <= 1.0 + ERROR, "{lower} to {upper}");
 }
 
 #[test]

@@ -42,6 +42,8 @@ const RESTED: usize = 8;
 const RESTED_WITHIN: f64 = WITHIN * (RESTED as f64 / WINDOWS as f64) * (RESTED as f64 / WINDOWS as f64);
 /// Longest trial over the time in which no acceleration would move a block by those 10 u: blocks may be slow to rest.
 const LONGEST: u64 = 4;
+/// The same under changed loads: a column that stands on its edge rocks far more slowly than contact of its whole base vibrates.
+const LONGEST_UNDER_LOADS: u64 = 64;
 /// Part of its radius that a block goes under changed loads before it fails.
 const FAR_UNDER_LOADS: f64 = 0.05;
 /// How often the steps that a trial may take to come to rest are doubled, from those that it lasts.
@@ -258,7 +260,8 @@ impl Course<'_> {
         let mut damping = LocalDamping::of_vibrations(DAMPING, AVERAGED);
         let (mut pushed, mut resting) = (self.failing.is_empty(), 0);
         let elastic_m = self.start.elastic_m;
-        for window in 1..=LONGEST * WINDOWS {
+        let longest = if self.leans { LONGEST_UNDER_LOADS } else { LONGEST };
+        for window in 1..=longest * WINDOWS {
             while simulation.state().step - first < window * steps / WINDOWS {
                 if self.stop.load(Ordering::Relaxed) || (self.is_settled)() {
                     return None;
