@@ -258,6 +258,10 @@ impl Course<'_> {
             Ok(Some(verdict)) => return Some(Ok(verdict)),
             Err(error) => return Some(Err(error)),
         }
+        if self.settle_tolerance.is_some() && !self.leans {
+            // How far it went on its way to rest says nothing about what it does now.
+            far_m = watched.farther_by(FAR * self.start.elastic_m);
+        }
         let (first, steps) = (simulation.state().step, self.steps(simulation.step_s()));
         let window_s = simulation.step_s() * (steps / WINDOWS) as f64;
         let slow_m_s = SLOW * self.threshold_m_s2() * window_s;
