@@ -12,7 +12,7 @@
 //! Friction makes equilibrium ambiguous: a wedge whose friction points across its line stands where one that slides does not. Blocks that
 //! stand are therefore pushed once, by the velocities with which they failed at a larger factor, and have to come to rest again. They have to
 //! go some elastic displacements before their friction points against their slip: where one of two joints is hardly pressed, a push of 5 u left a
-//! wedge standing at 1.4 % more than its limit.
+//! wedge standing at 1.4 % more than its limit. Shear springs give way to a push before they slip, so that blocks on them are pushed again as long as that moves them on.
 //!
 //! Changed loads act at once, and the scene is brought to rest under them first, with kinetic damping; a block that has gone 5 % of
 //! its radius then fails. Scenes whose friction has springs are brought to rest first, too.
