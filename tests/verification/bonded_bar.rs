@@ -15,7 +15,7 @@ const ENERGY_J_M2: f64 = 100.0;
 /// Stiffness of the joint until it breaks, beside the bar's 300 GPa/m.
 const JOINT_PA_M: f64 = 5e11;
 const PULLED_M: f64 = 70e-6;
-const END_S: f64 = 0.01;
+const END_S: f64 = 0.02;
 const STEP_S: f64 = 1e-7;
 
 /// The bar with this many cells across, one end held and one pulled.
@@ -68,8 +68,8 @@ fn a_bar_with_a_joint_across_breaks_by_its_fracture_energy() {
         let (last_m, gives_m_pa) = (2.0 * ENERGY_J_M2 / TENSION_PA, LENGTH_M / YOUNG_PA + 1.0 / JOINT_PA_M);
         let exact_pa = (last_m - 40e-6) / (last_m / TENSION_PA - gives_m_pa);
         let across = format!("a joint of {} × {} cells across", cells[0], cells[1]);
-        row("bonded bar", &format!("largest force, {across} [N]"), peak_pa * AREA_M2, Within(300.0, 0.03));
-        row("bonded bar", &format!("stress at 40 µm, {across} [Pa]"), at_40_pa, Within(exact_pa, 0.02));
+        row("bonded bar", &format!("largest force, {across} [N]"), peak_pa * AREA_M2, Within(300.0, 5e-3));
+        row("bonded bar", &format!("stress at 40 µm, {across} [Pa]"), at_40_pa, Within(exact_pa, 5e-3));
         let lost_j = -bar.sample().unwrap().friction_work_j;
         // The promise of docs/verification/verification.md: 1 % of G_I A.
         let what = format!("work of {across} [J]");
@@ -138,7 +138,7 @@ fn a_bar_snaps_that_stores_more_than_its_joint_takes() {
 #[test]
 fn a_bar_that_is_half_broken_goes_on_from_its_snapshot_with_the_same_bits() {
     let mut whole = simulation(&scene([2, 1]));
-    for _ in 0..50_000 {
+    for _ in 0..(0.5 * END_S / STEP_S).round() as u32 {
         whole.step().unwrap();
     }
     let damage =

@@ -205,9 +205,11 @@ fn a_slab_slides_on_a_rough_joint_whether_its_law_is_of_materials_or_of_the_join
     let exact_m = barton_slide_m();
     let pair = format!("material_pairs: [(between: (\"rock\", \"rock\"), {rough})]");
     let joint = format!("friction: (friction_deg: 60), rock_joints: [(joint: \"bed\", {rough})]");
+    // Undamped contact rings after the ramp of gravity. Barton's strength is concave in the pressure, so that a pressure that rings bears less: by 0.86 % of the slide.
     for (words, contact) in [("all joints", rough), ("two materials", &pair), ("the joint", &joint)] {
+        let contact = &format!("restitution: 0.05, {contact}");
         let what = format!("slide on a rough joint by the law of {words} [m]");
-        row("rough joints", &what, slides_m(contact), Within(exact_m, 0.02));
+        row("rough joints", &what, slides_m(contact), Within(exact_m, 5e-3));
     }
     let held = "friction: (friction_deg: 25, shear_penalty_pa_m: 1e9, roughness: (jrc: 10, jcs_pa: 1e6))";
     row("rough joints", "slide on a joint that holds [m]", slides_m(held), AtMost(1e-3));

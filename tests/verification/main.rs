@@ -84,6 +84,7 @@ mod toppling_slope;
 mod torsional_friction;
 mod travel;
 mod water;
+mod wedge_statics;
 
 use ndda::build;
 use ndda_mesh::Vec3;

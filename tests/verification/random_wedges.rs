@@ -1,19 +1,15 @@
 //! Factors of safety of random wedges, dry, with water, with cohesion and sliding on one plane, against limit equilibrium.
 
 use ndda::safety::{Kind, Question, Safety};
-use ndda_mesh::geometry::{tet_volume, triangle_area_vector};
-use ndda_mesh::{Mat3, Vec3};
-use ndda_solver::BodyKind;
+use ndda_mesh::Vec3;
 
 use crate::evidence::Answer::AtMost;
 use crate::evidence::row;
 use crate::safety_factor::{bracket, found, kind, limit_equilibrium, normal, wedge};
-use crate::simulation;
+use crate::wedge_statics::{measures, slides_without_turning};
 
 /// Error that is asked for.
 const ERROR: f64 = 0.01;
-const DENSITY_KG_M3: f64 = 2600.0;
-const GRAVITY_M_S2: f64 = 9.81;
 
 /// Numbers from 0 to 1 (Knuth's constants, 64 bits).
 fn random(state: &mut u64) -> f64 {
@@ -64,61 +60,6 @@ fn random_wedges_have_the_factors_of_limit_equilibrium() {
         // The statement: the factor is known to the error that was asked for.
         AtMost(ERROR),
     );
-}
-
-/// A named joint of the block above both: its area [m²] and its triangles.
-struct Face {
-    area_m2: f64,
-    triangles: Vec<[Vec3; 3]>,
-}
-
-impl Face {
-    fn center(&self) -> Vec3 {
-        let of = |t: &[Vec3; 3]| triangle_area_vector(t).norm() * (t[0] + t[1] + t[2]) / 3.0;
-        self.triangles.iter().map(of).sum::<Vec3>() / self.area_m2
-    }
-
-    /// Pressures at its corners where a weight presses it by its part along a normal [N] at a point above it, and water [Pa] from below, and it stays plane: linear
-    /// ones with that force and its moments.
-    fn pressures(&self, normal: Vec3, (pressed_n, point): (f64, Vec3), water_pa: f64) -> Vec<f64> {
-        // Linear in the horizontal distances from the line of the weight.
-        let terms = |x: Vec3| Vec3::new(1.0, x.x - point.x, x.y - point.y);
-        let middles = |[a, b, c]: &[Vec3; 3]| [0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)];
-        let (mut sums, mut water) = (Mat3::zeros(), Vec3::zeros());
-        for triangle in &self.triangles {
-            assert!((triangle_area_vector(triangle).normalize().dot(&normal).abs() - 1.0).abs() < 1e-9);
-            let third_m2 = triangle_area_vector(triangle).norm() / 3.0;
-            for middle in middles(triangle).map(terms) {
-                sums += third_m2 * middle * middle.transpose();
-                water += third_m2 * water_pa * middle;
-            }
-        }
-        let slopes = sums.try_inverse().expect("a face has an area") * (pressed_n * Vec3::x() - water);
-        self.triangles.iter().flatten().map(|corner| slopes.dot(&terms(*corner))).collect()
-    }
-}
-
-/// The block above both joints: its weight [N], its mass centre [m], and its faces on joint `a` and on joint `b`.
-fn measures(text: &str) -> (f64, Vec3, [Face; 2]) {
-    let simulation = simulation(text);
-    let blocks = simulation.blocks();
-    let free =
-        blocks.ids().find(|&block| simulation.shape(block).kind != BodyKind::Fixed).expect("a free block");
-    let x = &blocks.rest_position;
-    let corners = |tet: usize| blocks.tets[tet].map(|n| x[n.index()]);
-    let volume_m3: f64 = blocks.tets_of(free).map(|tet| tet_volume(&corners(tet))).sum();
-    let center = |tet: usize| 0.25 * corners(tet).iter().sum::<Vec3>();
-    let moment: Vec3 = blocks.tets_of(free).map(|tet| tet_volume(&corners(tet)) * center(tet)).sum();
-    let face = |name: &str| {
-        let on_joint = |(triangle, surface): &(&[ndda_mesh::NodeId; 3], &Option<u32>)| {
-            let is_named = surface.is_some_and(|surface| blocks.surface_names[surface as usize] == name);
-            is_named && blocks.block_of(triangle[0]) == free
-        };
-        let triangles = blocks.triangles.iter().zip(&blocks.triangle_surface).filter(on_joint);
-        let triangles: Vec<[Vec3; 3]> = triangles.map(|(t, _)| t.map(|n| x[n.index()])).collect();
-        Face { area_m2: triangles.iter().map(|t| triangle_area_vector(t).norm()).sum(), triangles }
-    };
-    (DENSITY_KG_M3 * GRAVITY_M_S2 * volume_m3, moment / volume_m3, [face("a"), face("b")])
 }
 
 /// Normal forces on both planes of a dry wedge over its weight, and the pull along their line.
@@ -183,13 +124,15 @@ fn water(pressure_pa: [f64; 2]) -> String {
     format!("water: [{}{}], contact:", of("a", a), of("b", b))
 }
 
-/// The contact of a scene whose joints have these friction angles [°], cohesions and tensile strengths [Pa], all of which they keep.
+/// The contact of a scene whose joints have these friction angles [°], cohesions and tensile strengths [Pa], all of which they keep: limit equilibrium of perfectly plastic
+/// joints, which open at the apex of Mohr and Coulomb's line where their faces are pressed unevenly, and lose nothing by that.
 fn contact(joints: [(f64, f64, f64); 2]) -> String {
     let law = |name: &str, (friction_deg, cohesion_pa, tension_pa): (f64, f64, f64)| {
         let strength =
             format!("friction_deg: {friction_deg}, cohesion_pa: {cohesion_pa}, tension_pa: {tension_pa}");
+        let opens = if tension_pa > 0.0 { ", opening_m: 0.1" } else { "" };
         format!(
-            "(joint: \"{name}\", friction: (shear_penalty_pa_m: 1e9, {strength}, residual: ({strength}))), "
+            "(joint: \"{name}\", friction: (shear_penalty_pa_m: 1e9, {strength}, residual: ({strength}{opens}))), "
         )
     };
     let [a, b] = joints;
@@ -200,15 +143,12 @@ fn contact(joints: [(f64, f64, f64); 2]) -> String {
     )
 }
 
-/// What springs that hold across the line of a wedge may add: they are not pushed out of it, as friction on velocities is.
-const ACROSS: f64 = 0.02;
-
-/// F = Σ (c A + (N − p A) tan φ)/(W sin ψ). Limit equilibrium knows no moments: Mohr and Coulomb's line has to hold up to its apex, where joints are pulled by what their weight
-/// presses unevenly.
+/// F = Σ (c A + (N − p A) tan φ)/(W sin ψ), to 1 % for every wedge. Limit equilibrium knows no moments: Mohr and Coulomb's line has to hold up to its apex, also where joints open, since their
+/// weight presses them unevenly.
 #[test]
 fn random_wedges_with_cohesion_and_water_have_the_factors_of_limit_equilibrium() {
     let wanted = wanted(3);
-    let (mut state, mut done, mut pulled, mut worst) = (13, 0, 0, 0.0f64);
+    let (mut state, mut done, mut turned, mut worst) = (13, 0, 0, 0.0f64);
     while done < wanted {
         let mut random = || random(&mut state);
         let mut plane = || (30.0 + 40.0 * random(), 360.0 * random());
@@ -222,7 +162,7 @@ fn random_wedges_with_cohesion_and_water_have_the_factors_of_limit_equilibrium()
             continue;
         }
         let dry = wedge(planes, friction_deg[0]);
-        let (weight_n, _, faces) = measures(&dry);
+        let (weight_n, center, faces) = measures(&dry);
         let mean_pa = [0, 1].map(|k| parts[k] * weight_n / faces[k].area_m2);
         // Cohesion up to half of the mean pressure of the weight, water up to a quarter of it.
         let cohesion_pa = [0, 1].map(|k| 0.5 * held[k] * mean_pa[k]);
@@ -232,6 +172,16 @@ fn random_wedges_with_cohesion_and_water_have_the_factors_of_limit_equilibrium()
             (0..2).map(|k| (cohesion_pa[k] + (mean_pa[k] - water_pa[k]) * tan[k]) * faces[k].area_m2).sum();
         let exact = held_n / (weight_n * pull);
         if !(0.6..6.0).contains(&exact) {
+            continue;
+        }
+        let forces = [0, 1].map(|k| {
+            let (tan, area_m2) = (tan[k] / exact, faces[k].area_m2);
+            let pressed_n = (mean_pa[k] - water_pa[k]) * area_m2;
+            let kept_n = [cohesion_pa[k] / exact * area_m2, water_pa[k] * area_m2];
+            (normal(planes[k].0, planes[k].1), pressed_n, tan, kept_n)
+        });
+        if !slides_without_turning(&faces, center, line, &forces) {
+            turned += 1;
             continue;
         }
         done += 1;
@@ -245,25 +195,17 @@ fn random_wedges_with_cohesion_and_water_have_the_factors_of_limit_equilibrium()
             kind(&safety)
         );
         assert_eq!(kind(&safety), Kind::Wedge, "{planes:?}");
-        let opened = safety.mechanism.as_ref().and_then(|how| how.opened.as_ref());
-        if let Some(opened) = opened.filter(|opened| opened.lowers_by > ERROR) {
-            // Such a wedge would topple if it could bear no more than that tension.
-            println!("pulled by more than c/tan φ on {:.0} % of its joints", 100.0 * opened.area_part);
-            assert!(lower < exact, "{lower} and {exact}");
-            pulled += 1;
-            done -= 1;
-            continue;
-        }
         worst = worst.max(off(&safety, exact));
     }
-    assert!(2 * pulled <= wanted, "{pulled} of {wanted} are pulled apart");
+    println!("{turned} more would turn");
+    assert!(10 * turned <= wanted + 10, "{turned} of {wanted} would turn");
     row(
         "safety",
         &format!(
             "{wanted} random wedges with cohesion and water: limit equilibrium outside of the bracket by [-]"
         ),
         worst,
-        AtMost(ACROSS),
+        AtMost(ERROR),
     );
 }
 

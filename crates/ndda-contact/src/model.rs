@@ -275,15 +275,10 @@ pub struct Bond {
     pub damage: f64,
     /// By how much it has slipped, where bonds slip without breaking [m].
     pub slip_m: f64,
+    /// By how much it has opened for good, where bonds yield in tension [m].
+    pub opened_m: f64,
     /// Its share of a normal force that acts at the first, second or third corner of the facet; of one in between, linear interpolation.
     pub bears: [f64; 3],
-}
-
-impl Bond {
-    /// Its share of a normal force, of which each corner of the facet has this part.
-    pub(crate) fn borne(&self, weights: &[f64; 3]) -> f64 {
-        self.bears.iter().zip(weights).map(|(part, weight)| part * weight).sum()
-    }
 }
 
 /// Motion of a block at the start of a step, and the push of contact in it, for contact damping.

@@ -5,7 +5,8 @@ use std::ops::Range;
 
 use ndda_contact::testing::{evaluate, test_box, test_set};
 use ndda_contact::{
-    ContactHistory, ContactInput, ContactModel, MohrCoulomb, PotentialContact, SmoothPotential,
+    ContactHistory, ContactInput, ContactModel, FrictionLaw, MohrCoulomb, PotentialContact, SmoothPotential,
+    SofteningCoulomb,
 };
 use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
 
@@ -27,13 +28,16 @@ struct Plates {
 
 impl Plates {
     fn new(friction_deg: f64, cohesion_pa: f64) -> Self {
+        Self::of(Box::new(MohrCoulomb::new(friction_deg, SHEAR_PA_M, cohesion_pa, TENSION_PA)))
+    }
+
+    fn of(law: Box<dyn FrictionLaw>) -> Self {
         let lower = test_box([0.0; 3], [1.0, 1.0, 0.1], [3, 2, 1]);
         let upper = test_box([0.0, 0.0, 0.1], [1.0, 1.0, 0.1], [2, 2, 1]);
         let blocks = test_set(vec![lower, upper]);
-        let law = MohrCoulomb::new(friction_deg, SHEAR_PA_M, cohesion_pa, TENSION_PA);
         let model = PotentialContact::new(PENALTY_PA)
             .with_potential(Box::new(SmoothPotential { reference_m: 1.0 }))
-            .with_friction(Box::new(law));
+            .with_friction(law);
         let (last, friction) =
             (blocks.rest_position.clone(), vec![Vec3::zeros(); blocks.rest_position.len()]);
         let mut plates =
@@ -216,5 +220,50 @@ fn a_bond_has_the_area_that_touches_not_that_of_the_facet() {
         let pull: Vec3 = evaluate(&mut model, &input(&lifted), &mut history).force[upper].iter().sum();
         assert!((pull.z / (-SHEAR_PA_M * 1e-7 * 0.2) - 1.0).abs() <= 1e-5, "{pull:?}");
         assert_eq!(model.energy_j(&input(&lifted), &history), Ok(0.0));
+    }
+}
+
+/// A joint of 30° that loses nothing by slip and opens by 1 mm at its tensile strength, which is more than c/tan φ.
+fn plastic(cohesion_pa: f64) -> Plates {
+    let strength = (30.0, cohesion_pa);
+    let law = SofteningCoulomb::new(SHEAR_PA_M, strength, strength, 0.0);
+    Plates::of(Box::new(law.with_tension(1e9, 1e9).that_opens(1e-3)))
+}
+
+#[test]
+fn a_joint_that_yields_in_tension_bears_its_apex_until_it_has_opened() {
+    let mut plates = plastic(1e5);
+    let apex_n = 1e5 / 30f64.to_radians().tan();
+    for opening_m in [1e-5, 5e-4, 9e-4] {
+        let (force, _) = plates.shifted(opening_m * Vec3::z());
+        assert!((force.z / -apex_n - 1.0).abs() < 1e-6, "{force:?} at {opening_m} m");
+    }
+    // Closed by a tenth of what its springs are stretched by.
+    let (unloaded, _) = plates.shifted((9e-4 - 0.1 * apex_n / SHEAR_PA_M) * Vec3::z());
+    assert!((unloaded.z / (-0.9 * apex_n) - 1.0).abs() < 1e-6, "{unloaded:?}");
+    assert_eq!(plates.shifted(2e-3 * Vec3::z()).0, Vec3::zeros());
+}
+
+/// Of a plate that is turned about its middle, a half is pressed and the other pulled open: c A + N tan φ, wherever its facets are pressed.
+#[test]
+fn a_face_that_yields_in_tension_bears_cohesion_everywhere_however_unevenly_it_is_pressed() {
+    let cohesion_pa = 1e5;
+    for (turn_rad, sunk_m) in [(2e-7, 1e-7), (1e-6, 1e-7), (4e-6, 1e-6), (4e-6, 0.0)] {
+        let mut plates = plastic(cohesion_pa);
+        let turned: Vec<Vec3> = (plates.blocks.rest_position.iter())
+            .map(|x| Vec3::new(x.x, x.y, x.z + turn_rad * (x.x - 0.5) - sunk_m))
+            .collect();
+        let mut forces = Vec::new();
+        for slip in 0..100 {
+            let mut position = plates.blocks.rest_position.clone();
+            let upper = plates.upper();
+            position[upper.clone()].copy_from_slice(&turned[upper.clone()]);
+            position[upper].iter_mut().for_each(|x| x.y += 1e-7 * f64::from(slip));
+            forces.push(plates.at(position).0);
+        }
+        let [last, before] = [1, 2].map(|k| forces[forces.len() - k]);
+        assert!((last - before).norm() < 1e-3 * last.norm(), "it slips: {last:?} and {before:?}");
+        let strength_n = cohesion_pa + last.z * 30f64.to_radians().tan();
+        assert!((-last.y / strength_n - 1.0).abs() < 1e-3, "{} and {strength_n} at {turn_rad}", -last.y);
     }
 }

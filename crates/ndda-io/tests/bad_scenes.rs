@@ -213,6 +213,14 @@ fn joints_that_cannot_be_are_pointed_at() {
         ),
         (
             "(friction_deg: 25, shear_penalty_pa_m: 2e9",
+            "(friction_deg: 25, shear_penalty_pa_m: 2e9, residual: (friction_deg: 20, opening_m: @0.01)",
+        ),
+        (
+            "(friction_deg: 25, shear_penalty_pa_m: 2e9",
+            "(friction_deg: 25, shear_penalty_pa_m: 2e9, residual: (friction_deg: 20, opening_m: @-1)",
+        ),
+        (
+            "(friction_deg: 25, shear_penalty_pa_m: 2e9",
             "(friction_deg: 25, shear_penalty_pa_m: 2e9, cohesion_pa: 1e5, roughness: @(jrc: 10, jcs_pa: 1e8)",
         ),
         (

@@ -2985,6 +2985,9 @@ class Residual(Builder):
         Default: 0.
     over_m : float, optional
         Slip over which strength falls linearly [m]. Default: 0, at once.
+    opening_m : float, optional
+        How far the joint opens at its tensile strength, which it keeps until then with its cohesion, as limit
+        equilibrium of perfectly plastic joints assumes [m]. Default: 0, a joint that opens is broken.
 
     Examples
     --------
@@ -2996,7 +2999,8 @@ class Residual(Builder):
     cohesion_pa: float | None = None
     tension_pa: float | None = None
     over_m: float | None = None
-    _kinds: ClassVar[Mapping[str, str]] = {"friction_deg": "num", "cohesion_pa": "num", "tension_pa": "num", "over_m": "num"}
+    opening_m: float | None = None
+    _kinds: ClassVar[Mapping[str, str]] = {"friction_deg": "num", "cohesion_pa": "num", "tension_pa": "num", "over_m": "num", "opening_m": "num"}
 
 
 @dataclass(kw_only=True)

@@ -180,6 +180,10 @@ pub struct Residual {
     /// Slip over which strength falls linearly [m]. Default: 0, at once.
     #[serde(default)]
     pub over_m: f64,
+    /// How far the joint opens at its tensile strength, which it keeps until then with its cohesion, as limit equilibrium of perfectly plastic joints assumes [m]. Default: 0, a
+    /// joint that opens is broken.
+    #[serde(default)]
+    pub opening_m: f64,
 }
 
 /// Friction between two materials.

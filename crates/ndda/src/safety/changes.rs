@@ -1,7 +1,7 @@
 //! Changes of a trial to the scene.
 
 use ndda_io::read::LoadedScene;
-use ndda_io::scene::{Contact, Friction, Scene};
+use ndda_io::scene::{Contact, Friction, Residual, Scene};
 use ndda_mesh::Vec3;
 use serde::{Deserialize, Serialize};
 
@@ -92,10 +92,21 @@ pub fn has_springs_only(scene: &Scene) -> bool {
     self::frictions(frictions).iter().all(|friction| friction.shear_penalty_pa_m.is_some())
 }
 
-/// Whether some friction of a scene is by shear springs.
-pub fn has_springs(scene: &Scene) -> bool {
-    let frictions = &mut scene.clone();
-    self::frictions(frictions).iter().any(|friction| friction.shear_penalty_pa_m.is_some())
+/// Whether slip weakens some joint, or opens it: what is pushed then is not what it was.
+pub fn weakens_by_slip(scene: &Scene) -> bool {
+    frictions(&mut scene.clone()).iter().any(|friction| {
+        let holds = friction.cohesion_pa > 0.0 || friction.tension_pa > 0.0;
+        let is_kept = friction.residual.is_some_and(|residual| keeps_all(friction, &residual));
+        let weakens = (holds || friction.residual.is_some()) && !is_kept;
+        weakens || friction.roughness.is_some() || friction.fracture.is_some() || friction.dilation.is_some()
+    })
+}
+
+/// Whether a joint has all of its strength after any slip, and a little opening.
+fn keeps_all(friction: &Friction, residual: &Residual) -> bool {
+    let peak = [friction.friction_deg, friction.cohesion_pa, friction.tension_pa];
+    let opens = friction.tension_pa == 0.0 || residual.opening_m > 0.0;
+    peak == [residual.friction_deg, residual.cohesion_pa, residual.tension_pa] && opens
 }
 
 /// Whether some joint has cohesion or tensile strength.

@@ -327,9 +327,9 @@ impl<'a> Search<'a> {
         Ok(model)
     }
 
-    /// Whether blocks are pushed: not where joints have springs, whose cohesion a push might break.
+    /// Whether blocks are pushed: not where a push might break joints or wear them off.
     fn may_push(&self) -> bool {
-        !changes::has_springs(&self.loaded.scene)
+        !changes::weakens_by_slip(&self.loaded.scene)
     }
 
     /// Velocities with which blocks fail at the smallest factor at which they do.

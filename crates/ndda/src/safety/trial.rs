@@ -12,10 +12,12 @@
 //! Friction makes equilibrium ambiguous: a wedge whose friction points across its line stands where one that slides does not. Blocks that
 //! stand are therefore pushed once, by the velocities with which they failed at a larger factor, and have to come to rest again. They have to
 //! go some elastic displacements before their friction points against their slip: where one of two joints is hardly pressed, a push of 5 u left a
-//! wedge standing at 1.4 % more than its limit.
+//! wedge standing at 1.4 % more than its limit. Shear springs give way to a push before they slip, so that blocks on them are pushed again as long as that moves them on.
 //!
 //! Changed loads act at once, and the scene is brought to rest under them first, with kinetic damping; a block that has gone 5 % of
 //! its radius then fails. Scenes whose friction has springs are brought to rest first, too.
+
+mod settled;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
@@ -25,12 +27,11 @@ use super::free_blocks::{ELSEWHERE, Moved, fastest_m_s, free};
 use super::slender::Slender;
 use super::watched::Watched;
 use ndda_mesh::Vec3;
-use ndda_solver::{LocalDamping, Settle, Simulation, Snapshot, StepError};
+use ndda_solver::{LocalDamping, Simulation, Snapshot, StepError};
 use serde::{Deserialize, Serialize};
 
 use crate::numbers::length;
 use crate::run::motion::radius_m;
-use crate::run::unless_stopped;
 
 /// Part of the wanted error times gravity that counts as no acceleration.
 const NO_ACCELERATION: f64 = 0.02;
@@ -42,6 +43,8 @@ const RESTED: usize = 8;
 const RESTED_WITHIN: f64 = WITHIN * (RESTED as f64 / WINDOWS as f64) * (RESTED as f64 / WINDOWS as f64);
 /// Longest trial over the time in which no acceleration would move a block by those 10 u: blocks may be slow to rest.
 const LONGEST: u64 = 4;
+/// The same under changed loads: a column that stands on its edge rocks far more slowly than contact of its whole base vibrates.
+const LONGEST_UNDER_LOADS: u64 = 64;
 /// Part of its radius that a block goes under changed loads before it fails.
 const FAR_UNDER_LOADS: f64 = 0.05;
 /// How often the steps that a trial may take to come to rest are doubled, from those that it lasts.
@@ -59,6 +62,9 @@ const RESTING: u32 = 2;
 const PUSHED: f64 = 20.0;
 /// The same under changed loads: a column that is pushed farther topples before its limit.
 const PUSHED_UNDER_LOADS: f64 = 2.0;
+/// How often blocks are pushed on that stand on springs, which give way to a push before they slip, and elastic displacements that a push has to move them by for another one.
+const PUSHES_ON_SPRINGS: u32 = 10;
+const PUSHED_ON: f64 = 0.5;
 /// Local damping of vibrations in trials, and the steps over which velocities are averaged.
 const DAMPING: f64 = 0.8;
 const AVERAGED: f64 = 50.0;
@@ -252,13 +258,18 @@ impl Course<'_> {
             Ok(Some(verdict)) => return Some(Ok(verdict)),
             Err(error) => return Some(Err(error)),
         }
+        if self.settle_tolerance.is_some() && !self.leans {
+            // How far it went on its way to rest says nothing about what it does now.
+            far_m = watched.farther_by(FAR * self.start.elastic_m);
+        }
         let (first, steps) = (simulation.state().step, self.steps(simulation.step_s()));
         let window_s = simulation.step_s() * (steps / WINDOWS) as f64;
         let slow_m_s = SLOW * self.threshold_m_s2() * window_s;
         let mut damping = LocalDamping::of_vibrations(DAMPING, AVERAGED);
-        let (mut pushed, mut resting) = (self.failing.is_empty(), 0);
+        let (mut pushes, mut resting) = (self.most_pushes(), 0);
         let elastic_m = self.start.elastic_m;
-        for window in 1..=LONGEST * WINDOWS {
+        let longest = if self.leans { LONGEST_UNDER_LOADS } else { LONGEST };
+        for window in 1..=longest * WINDOWS {
             while simulation.state().step - first < window * steps / WINDOWS {
                 if self.stop.load(Ordering::Relaxed) || (self.is_settled)() {
                     return None;
@@ -274,10 +285,14 @@ impl Course<'_> {
             }
             resting = if fastest_m_s(simulation) < slow_m_s { resting + 1 } else { 0 };
             let rests = resting == RESTING || watched.rested(RESTED, RESTED_WITHIN * elastic_m);
-            if !pushed && (rests || window == PUSH) {
+            let is_next = if watched.is_pushed() { rests } else { rests || window == PUSH };
+            if is_next && watched.is_pushed() && watched.pushed_on_m() < PUSHED_ON * elastic_m {
+                pushes = 0;
+            }
+            if pushes > 0 && is_next {
                 self.push(simulation);
                 watched.pushed();
-                (pushed, resting) = (true, 0);
+                (pushes, resting) = (pushes - 1, 0);
                 far_m = watched.farther_by(FAR * elastic_m);
             } else if (rests || window >= WINDOWS) && self.is_decided(simulation, watched, &far_m) {
                 break;
@@ -296,6 +311,16 @@ impl Course<'_> {
         self.at_the_end(simulation, watched, far_m).0 != State::Undecided
     }
 
+    /// How often blocks are pushed at most.
+    fn most_pushes(&self) -> u32 {
+        let on_springs = self.settle_tolerance.is_some() && !self.leans;
+        match (self.failing.is_empty(), on_springs) {
+            (true, _) => 0,
+            (false, true) => PUSHES_ON_SPRINGS,
+            (false, false) => 1,
+        }
+    }
+
     /// √(2 a d), so that a = ½ error g stops a block after d = 20 u, or 2 u under changed loads [m/s].
     fn push_m_s(&self) -> f64 {
         let pushed = if self.leans { PUSHED_UNDER_LOADS } else { PUSHED };
@@ -307,44 +332,6 @@ impl Course<'_> {
         if let Some(field) = failing::field(simulation, self.failing, self.push_m_s()) {
             simulation.push(&field);
         }
-    }
-
-    /// Brings the scene to rest under loads of its own, in calls of more and more steps, until it rests or a block has gone far; the
-    /// verdict in that case, none if somebody asked to end.
-    fn settle(
-        &self,
-        simulation: &mut Simulation,
-        watched: &mut Watched,
-        far_m: &[f64],
-    ) -> Option<Result<Option<(State, String)>, StepError>> {
-        let Some(tolerance) = self.settle_tolerance else { return Some(Ok(None)) };
-        let mut settled = Ok(());
-        for doublings in 0..=TO_REST {
-            let settle = Settle::new(tolerance, self.steps(simulation.step_s()) << doublings);
-            settled = simulation.settle_watched(&settle, &mut |_| unless_stopped(self.stop)).map(drop);
-            if self.stop.load(Ordering::Relaxed) {
-                return None;
-            }
-            watched.begin(simulation);
-            if let Some((block, gone_m)) = watched.beyond(far_m) {
-                let name = &simulation.blocks().names[block.index()];
-                let reason = match settled {
-                    Ok(()) => {
-                        format!("`{name}` came to rest only after {}, in another place", length(gone_m))
-                    }
-                    Err(_) => format!("`{name}` had moved {}, and did not come to rest", length(gone_m)),
-                };
-                return Some(Ok(Some((State::Fails, reason))));
-            }
-            if !matches!(settled, Err(StepError::NotSettled { .. })) {
-                break;
-            }
-        }
-        // What does not rest is let go: it accelerates, or it does not.
-        Some(match settled {
-            Ok(()) | Err(StepError::NotSettled { .. }) => Ok(None),
-            Err(error) => Err(error),
-        })
     }
 
     /// How far each free block goes elastically at most [m].

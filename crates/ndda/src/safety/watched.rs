@@ -43,6 +43,17 @@ impl Watched {
         self.before = self.gone_m.len() - 1;
     }
 
+    /// Whether blocks have been pushed.
+    pub fn is_pushed(&self) -> bool {
+        self.before > 0
+    }
+
+    /// How far the block has gone since the last push that has gone farthest since then [m].
+    pub fn pushed_on_m(&self) -> f64 {
+        let last = self.gone_m.last().expect("the start is looked at");
+        last.iter().zip(&self.gone_m[self.before]).map(|(now, then)| (now - then).abs()).fold(0.0, f64::max)
+    }
+
     /// How far each block will be when it has gone farther by so much [m].
     pub fn farther_by(&self, far_m: f64) -> Vec<f64> {
         self.gone_m.last().expect("the start is looked at").iter().map(|gone| gone + far_m).collect()

@@ -40,24 +40,28 @@ pub(crate) fn break_overloaded(
     let mut bonds = std::mem::take(&mut history.bonds);
     let mut opened = false;
     for place in 0..bonds.len() {
-        let bond = &mut bonds[place];
-        if bond.damage >= 1.0 {
+        if bonds[place].damage >= 1.0 {
             continue;
         }
-        let law = law(joints, blocks, bond);
+        let law = law(joints, blocks, &bonds[place]);
         if let Some(fracture) = law.and_then(|law| law.fracture()) {
+            let bond = &mut bonds[place];
             largest = largest.max(damage(bond, fracture, input));
             opened |= bond.damage >= 1.0;
             continue;
         }
-        let wanted = key(blocks, joints.memory, bond);
+        let wanted = key(blocks, joints.memory, &bonds[place]);
         let touch = touching.binary_search_by_key(&wanted, |touch| {
             // With memory per element, all hits of a facet are in one.
             let element = wanted.2.map(|_| integrals.overlaps_of(touch)[0].tet);
             (touch.triangle, touch.target, element)
         });
-        let pressed_n =
-            touch.map_or(0.0, |t| penalty_of_facet[t] * bond.borne(&integrals.sums_of(&touching[t]).weights));
+        let pressed_n = touch.map_or(0.0, |t| {
+            let weights = integrals.sums_of(&touching[t]).weights;
+            let facet = (blocks, joints.memory, wanted);
+            penalty_of_facet[t] * bonds_of_facet::borne(&bonds, place, facet, &weights)
+        });
+        let bond = &mut bonds[place];
         let Some(overload) = overload(bond, law, (pressed_n, input), scratch) else { continue };
         largest = largest.max(overload);
         let slip_m = bond.slip_m;
@@ -86,7 +90,11 @@ fn overload(
     let Some(law) = law else { return Some(0.0) };
     let mut stretch = Stretch::of(input, bond);
     let tension_pa = match law.tension_after_slip_pa(bond.slip_m) {
-        Some(_) => slip(bond, &mut stretch, law, (pressed_n, input), scratch),
+        Some(strength_pa) => {
+            open(bond, &mut stretch, (law, strength_pa), input);
+            let left_pa = slip(bond, &mut stretch, law, (pressed_n, input), scratch);
+            left_pa.inspect(|&left_pa| open(bond, &mut stretch, (law, left_pa), input))
+        }
         None => Some(law.tension_pa()),
     };
     let Some(tension_pa) = tension_pa else { return Some(0.0) };
@@ -101,6 +109,22 @@ fn damage(bond: &mut Bond, fracture: &Fracture, input: &ContactInput) -> f64 {
     let at_once = bond.damage == 0.0 && reached >= 1.0;
     bond.damage = bond.damage.max(reached);
     if at_once { fracture.load(opening_m, slip_m) - 1.0 } else { 0.0 }
+}
+
+/// Lets a bond open as far as its tensile strength [Pa] is exceeded, where its law lets it.
+fn open(
+    bond: &mut Bond,
+    stretch: &mut Stretch,
+    (law, strength_pa): (&dyn FrictionLaw, f64),
+    input: &ContactInput,
+) {
+    let elastic_m = strength_pa / law.bond_stiffness_pa_m();
+    let beyond_m = stretch.opening_m - elastic_m;
+    if beyond_m > 0.0 && bond.opened_m + beyond_m <= law.opens_m() {
+        bond.opened_m += beyond_m;
+        stretch.opening_m = elastic_m;
+        bond.lambda = frame_of(bond.tet, input).lambda_at(&stretch.anchor());
+    }
 }
 
 /// Lets a bond slip as far as its shear strength is exceeded. Gives its tensile strength [Pa]; none where slip has left none, or has gone as far as what the bond holds is wide.
@@ -121,8 +145,7 @@ fn slip(
     let (shear_n, slip_m) = (memory.shear_n[0], memory.state[0]);
     if shear_n < trial_n {
         stretch.offset_m *= shear_n / trial_n;
-        let anchor = stretch.center + stretch.opening_m * stretch.normal + stretch.offset_m;
-        bond.lambda = frame_of(bond.tet, input).lambda_at(&anchor);
+        bond.lambda = frame_of(bond.tet, input).lambda_at(&stretch.anchor());
         bond.slip_m = slip_m;
     }
     let left = law.tension_after_slip_pa(bond.slip_m).filter(|left_pa| *left_pa > 0.0);

@@ -137,6 +137,7 @@ impl<'a> Patch<'a> {
             part,
             damage: 0.0,
             slip_m: 0.0,
+            opened_m: 0.0,
             bears,
         })
     }

@@ -12,7 +12,7 @@ pub(crate) type Key = (TriangleId, BlockId, Option<TetId>);
 fn of_facet<'a>(
     bonds: &'a [Bond],
     (blocks, memory, wanted): (&'a BlockSet, Memory, Key),
-) -> impl Iterator<Item = &'a Bond> {
+) -> impl Iterator<Item = &'a Bond> + Clone {
     let first = bonds.partition_point(|bond| key(blocks, memory, bond) < wanted);
     bonds[first..].iter().take_while(move |bond| key(blocks, memory, bond) == wanted)
 }
@@ -24,6 +24,34 @@ pub(crate) fn broken_part(bonds: &[Bond], blocks: &BlockSet, memory: Memory, wan
     (whole > 0.0).then_some(1.0 - whole)
 }
 
+/// What a bond bears of a force on its facet, of which each corner has its weight. Together the bonds of a facet bear that force where it acts; where one of them would
+/// have to be pulled for that, it bears nothing, and the others all of the force: their strengths add up to that of the facet.
+fn borne_of(own: impl Iterator<Item = [f64; 3]> + Clone, bears: &[f64; 3], weights: &[f64; 3]) -> f64 {
+    let of =
+        |bears: &[f64; 3]| -> f64 { bears.iter().zip(weights).map(|(part, weight)| part * weight).sum() };
+    let (force, each) = (of(bears), own.map(|bears| of(&bears)));
+    if each.clone().all(|force| force >= 0.0) {
+        return force;
+    }
+    let (all, pressed) =
+        each.fold((0.0, 0.0), |(all, pressed), force| (all + force, pressed + force.max(0.0)));
+    if pressed > 0.0 { force.max(0.0) * (all / pressed).max(0.0) } else { 0.0 }
+}
+
+/// What the bond at a place of the list, in the order of keys, bears of a force on its facet, of which each corner has its weight.
+pub(crate) fn borne(
+    bonds: &[Bond],
+    place: usize,
+    facet: (&BlockSet, Memory, Key),
+    weights: &[f64; 3],
+) -> f64 {
+    let (blocks, memory, wanted) = facet;
+    let is_own = |bond: &&Bond| key(blocks, memory, bond) == wanted;
+    let before = bonds[..place].iter().rev().take_while(is_own);
+    let own = before.chain(bonds[place..].iter().take_while(is_own)).map(|bond| bond.bears);
+    borne_of(own, &bonds[place].bears, weights)
+}
+
 /// What the broken bonds of a facet leave to its friction: ∫ φ dA that they would bear, of which each corner has its weight, and the area that the other bonds do not
 /// hold [m²].
 pub(crate) fn left_to_friction(
@@ -32,12 +60,13 @@ pub(crate) fn left_to_friction(
     (weights, area_m2, facet_m2): (&[f64; 3], f64, f64),
 ) -> [f64; 2] {
     let own = of_facet(bonds, facet);
+    let all = of_facet(bonds, facet).map(|bond| bond.bears);
     let (mut pressure, mut free_m2) = (0.0, area_m2);
     for bond in own {
         if bond.damage < 1.0 {
             free_m2 -= bond.share * facet_m2;
         } else {
-            pressure += bond.borne(weights);
+            pressure += borne_of(all.clone(), &bond.bears, weights);
         }
     }
     [pressure.max(0.0), free_m2.max(0.0)]

@@ -98,6 +98,11 @@ pub trait FrictionLaw: Send + Sync {
         None
     }
 
+    /// How far a bond may open beyond the stretch of its spring, at the tension that it carries, before it breaks [m].
+    fn opens_m(&self) -> f64 {
+        0.0
+    }
+
     /// Stiffness of a bond that carries tension [Pa/m].
     fn bond_stiffness_pa_m(&self) -> f64 {
         0.0

@@ -19,6 +19,8 @@ pub struct SofteningCoulomb {
     over_m: f64,
     /// Tensile strength at the peak, and when it is residual [Pa].
     tension_pa: [f64; 2],
+    /// How far it opens at that strength before it is broken [m].
+    opens_m: f64,
 }
 
 /// Friction μ = tan φ and cohesion c [Pa].
@@ -49,6 +51,7 @@ impl SofteningCoulomb {
             residual: strength(residual),
             over_m,
             tension_pa: [0.0; 2],
+            opens_m: 0.0,
         }
     }
 
@@ -56,6 +59,12 @@ impl SofteningCoulomb {
     #[must_use]
     pub fn with_tension(self, peak_pa: f64, residual_pa: f64) -> Self {
         Self { tension_pa: [peak_pa, residual_pa], ..self }
+    }
+
+    /// That yields in tension: it opens by so much at its tensile strength, and keeps that and its cohesion until then [m].
+    #[must_use]
+    pub fn that_opens(self, opens_m: f64) -> Self {
+        Self { opens_m, ..self }
     }
 
     /// Part of the way from peak to residual.
@@ -66,6 +75,14 @@ impl SofteningCoulomb {
     /// Part of the way from peak to residual after a plastic slip [m].
     fn softened_by(&self, slip_m: f64) -> f64 {
         if slip_m >= self.over_m { 1.0 } else { slip_m / self.over_m }
+    }
+
+    /// c/tan φ at a part of the way from peak to residual: beyond that tension no shear is left [Pa].
+    fn apex_pa(&self, softened: f64) -> f64 {
+        let between =
+            |of: fn(&Strength) -> f64| of(&self.peak) + softened * (of(&self.residual) - of(&self.peak));
+        let friction = between(|strength| strength.friction);
+        if friction > 0.0 { between(|strength| strength.cohesion_pa) / friction } else { f64::INFINITY }
     }
 
     /// Plastic slip in a step whose spring would bear `trial_n`: |f| − k Δp = τ(p + Δp) S, where k = ½ k_s S̄.
@@ -129,7 +146,13 @@ impl FrictionLaw for SofteningCoulomb {
         let [peak_pa, residual_pa] = self.tension_pa;
         // Before any slip a joint has its peak strength, also where that falls to the residual one at once (over_m = 0).
         let softened = if slip_m > 0.0 { self.softened_by(slip_m) } else { 0.0 };
-        (peak_pa > 0.0).then_some(peak_pa + softened * (residual_pa - peak_pa))
+        let strength_pa = peak_pa + softened * (residual_pa - peak_pa);
+        (peak_pa > 0.0)
+            .then(|| if self.opens_m > 0.0 { strength_pa.min(self.apex_pa(softened)) } else { strength_pa })
+    }
+
+    fn opens_m(&self) -> f64 {
+        self.opens_m
     }
 
     /// As stiff in tension as in shear, so that what opens is broken.

@@ -54,6 +54,11 @@ impl Stretch {
         }
     }
 
+    /// The point that it is bonded to [m].
+    pub(crate) fn anchor(&self) -> Vec3 {
+        self.center + self.opening_m * self.normal + self.offset_m
+    }
+
     /// Opening and slip without what may be rounding [m].
     pub(crate) fn beyond_rounding_m(&self) -> (f64, f64) {
         (self.opening_m - self.rounding_m, (self.offset_m.norm() - self.rounding_m).max(0.0))

@@ -92,7 +92,7 @@ impl Check<'_> {
 
     fn residual(&mut self, path: &str, peak: &Friction, residual: &Residual) {
         let field = |name: &str| format!("{path}.{name}");
-        let Residual { friction_deg, cohesion_pa, tension_pa, over_m } = *residual;
+        let Residual { friction_deg, cohesion_pa, tension_pa, over_m, opening_m } = *residual;
         if !(0.0..=peak.friction_deg).contains(&friction_deg) {
             let message = format!("{friction_deg}°: must be from 0 to the peak, {}°", peak.friction_deg);
             self.error(field("friction_deg"), message, "joints weaken when they slip");
@@ -111,6 +111,13 @@ impl Check<'_> {
                 format!("{over_m} m: must be zero or positive"),
                 "0 for a strength that falls at once",
             );
+        }
+        if !(opening_m >= 0.0 && opening_m.is_finite()) {
+            let message = format!("{opening_m} m: must be zero or positive");
+            self.error(field("opening_m"), message, "0 for a joint that is broken where it opens");
+        } else if opening_m > 0.0 && tension_pa <= 0.0 {
+            let help = "give residual.tension_pa, the tension at which it opens";
+            self.misfit(field("opening_m"), "a joint without tensile strength opens freely", help);
         }
         if peak.shear_penalty_pa_m.is_none() {
             let help = "give shear_penalty_pa_m, the stiffness of the joint before it slips";
