@@ -90,7 +90,9 @@ fn a_cube_rebounds_by_the_coefficient_whatever_its_body_the_potential_the_penalt
                     worst = worst.max((rebound - restitution).abs());
                     given = given.max(given_part);
                 }
-                let tolerance = if restitution == 0.0 && body != "Rigid" { 0.03 } else { 0.01 };
+                // Where nothing is to come back, what the blow leaves of vibrations in the cube counts as rebound; `Element`, which pushes on few nodes, leaves most.
+                let vibrates = restitution == 0.0 && body != "Rigid" && potential == "Element";
+                let tolerance = if vibrates { 0.015 } else { 0.01 };
                 let what = format!("error of the rebound, e = {restitution}, {body}, {potential}");
                 row(CASE, &what, worst, AtMost(tolerance));
                 // Damping only takes: rounding of up to 20/0.02 steps. Stiff rock vibrates in itself under the blow, which the damping does not

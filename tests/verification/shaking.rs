@@ -62,6 +62,18 @@ fn pulse(a: f64, length_s: f64) -> Vec<(f64, f64)> {
     vec![(0.0, a), (length_s, a), (length_s + 1e-9, 0.0)]
 }
 
+/// When a slip ends that slows down evenly: the line through half and a tenth of its largest speed meets zero [s].
+fn ends_s(found: &[f64], step_s: f64) -> f64 {
+    let speeds: Vec<f64> = found.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect();
+    let fastest = (0..speeds.len()).max_by(|&a, &b| speeds[a].total_cmp(&speeds[b])).expect("steps");
+    let falls_below_s = |part: f64| {
+        let slow = (fastest..speeds.len()).find(|&step| speeds[step] < part * speeds[fastest]);
+        step_s * (slow.expect("it slows down") as f64 + 1.5)
+    };
+    let (half_s, tenth_s) = (falls_below_s(0.5), falls_below_s(0.1));
+    tenth_s + 0.25 * (tenth_s - half_s)
+}
+
 #[test]
 fn a_pulse_slides_a_block_on_level_ground() {
     let friction_deg = 0.1f64.atan().to_degrees();
@@ -73,6 +85,7 @@ fn a_pulse_slides_a_block_on_level_ground() {
         -found[found.len() - 1],
         Within(0.735750, PROMISED),
     );
+    row("sliding block", "end of that slip [s]", ends_s(&found, 2e-4), Within(1.5, PROMISED));
     let exact = slip(&rows, &Slide::Yield(0.1 * G)).last_m;
     assert!((exact + 0.735750).abs() < 1e-6, "{exact}");
 }
@@ -87,6 +100,14 @@ fn a_pulse_slides_a_block_down_a_slope() {
         let which = if along_slope { "along it" } else { "horizontally" };
         let name = format!("slip down a slope of 20°, φ 30°, shaken {which} by 0.5 g for 0.2 s [m]");
         row("sliding block", &name, found[found.len() - 1], Within(exact, PROMISED));
+        if !along_slope {
+            row(
+                "sliding block",
+                "end of that slip down a slope [s]",
+                ends_s(&found, 2e-4),
+                Within(0.567128, PROMISED),
+            );
+        }
     }
 }
 

@@ -13,6 +13,7 @@ mod parts;
 mod patch;
 mod solve;
 mod spread;
+mod tolerance;
 
 use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
 use rayon::prelude::*;
@@ -33,6 +34,7 @@ use crate::friction::patches::patch::{ContactPatch, Moved, PatchFacets, PatchSum
 use crate::friction::patches::solve::newton::Newton;
 use crate::friction::patches::solve::stage::{self, Visits};
 use crate::friction::patches::solve::{CoupledPatch, Motion, Search};
+use crate::friction::patches::tolerance::Tolerance;
 use crate::integration::integrals::Integrals;
 use crate::integration::overlap_pair::{ActiveFacet, FacetMoments};
 use crate::model::{Body, ContactHistory, ContactInput, FaceMemory};
@@ -163,9 +165,8 @@ impl FrictionPatches {
         self.find_patches(scene, forces, history);
         let blocks_of = |summary: &PatchSummary| (summary.owner, summary.target);
         self.adjacency.arrange(scene.input.blocks.len(), self.summaries.iter().map(blocks_of));
-        let tolerance = scene.joints.tolerance.max(scene.input.friction_tolerance);
-        let tolerance = solve::tolerance(scene.input.is_iterated, tolerance, self.patches.len());
-        solve::find_tolerances(&mut self.summaries, scene.input.bodies, tolerance, &mut self.most_n);
+        let tolerance = Tolerance::new(scene.input, scene.joints.tolerance, self.patches.len());
+        tolerance.find(&mut self.summaries, scene.input.bodies, &mut self.most_n);
         self.advance_bodies(scene);
         let left_m_s = self.solve(scene, forces).left_m_s;
         let Self { patches, runs, run_of, new_faces, own_m2, .. } = self;

@@ -14,21 +14,15 @@
 
 use ndda_mesh::{BlockId, Mat3, Vec3};
 
-use crate::friction::law_table::TOLERANCE;
 use crate::friction::patches::limit_surface::{LimitSurface, solved};
 use crate::friction::patches::nodal::{Nodal, NodalSide};
-use crate::friction::patches::patch::{ContactPatch, PatchSummary};
+use crate::friction::patches::patch::ContactPatch;
 use crate::friction::patches::solve::newton::Newton;
 use crate::friction::patches::solve::stage::{Left, Visits, solve_stage};
 use crate::model::Body;
 
 /// γ of Alexander's method.
 const GAMMA: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
-/// Part of the largest friction on a block that does not matter where the solver compares forces of one evaluation with the next.
-const ITERATED_TOLERANCE: f64 = 1e-8;
-/// Patches from which on the tolerance grows with the square of their number, and how many times at most.
-const MANY: f64 = 1000.0;
-const MOST_OF_MANY: f64 = 100.0;
 /// Residual at which the friction of one patch is accepted, relative to the change that does not matter.
 const LOCAL_TOLERANCE: f64 = 0.1;
 /// Least flexibility of a patch in any direction over the largest.
@@ -168,7 +162,7 @@ impl CoupledPatch {
         }
     }
 
-    /// Friction of a patch that is [slight](PatchSummary::is_slight): it opposes the slip of blocks that move as a whole.
+    /// Friction of a patch that is [slight](super::patch::PatchSummary::is_slight): it opposes the slip of blocks that move as a whole.
     pub(super) fn slight_friction(&mut self, bodies: &[Body]) {
         let of = |block: BlockId, k: usize| self.slip_of(&bodies[block.index()], &self.arms[k]);
         let slip = of(self.owner, 0) - of(self.target, 1);
@@ -195,39 +189,6 @@ impl CoupledPatch {
         let along = self.axes[0] * force.x + self.axes[1] * force.y;
         let slides = along.norm() >= (1.0 - 1e-6) * self.surface.most_n;
         (along, force.z * self.surface.radius_m, slides)
-    }
-}
-
-/// Friction is found when no patch changes its own by more than this part of the largest on both of its blocks. Where thousands of patches hold each
-/// other, each being about to slip, a hundred times as exact a search takes a hundred times as long; the next step goes on from what was found.
-pub(super) fn tolerance(is_iterated: bool, tolerance: f64, patches: usize) -> f64 {
-    if is_iterated {
-        return ITERATED_TOLERANCE;
-    }
-    let many = (patches as f64 / MANY).powi(2).min(MOST_OF_MANY);
-    if many > 1.0 { tolerance.max(many * TOLERANCE) } else { tolerance }
-}
-
-/// A change of friction matters by what else acts on both blocks: the lesser of both largest, which `most_n` is room for.
-pub(super) fn find_tolerances(
-    patches: &mut [PatchSummary],
-    bodies: &[Body],
-    tolerance: f64,
-    most_n: &mut Vec<f64>,
-) {
-    most_n.clear();
-    most_n.resize(bodies.len(), 0.0);
-    for patch in patches.iter().filter(|patch| patch.has_friction) {
-        for block in [patch.owner.index(), patch.target.index()] {
-            most_n[block] = most_n[block].max(patch.most_n);
-        }
-    }
-    for patch in patches {
-        let of = |block: BlockId| {
-            let is_held = bodies[block.index()].mass_kg.is_infinite();
-            if is_held { f64::INFINITY } else { most_n[block.index()] }
-        };
-        patch.tolerance_n = tolerance * of(patch.owner).min(of(patch.target));
     }
 }
 

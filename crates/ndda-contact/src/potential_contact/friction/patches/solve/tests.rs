@@ -1,4 +1,6 @@
 use super::*;
+use crate::friction::patches::patch::PatchSummary;
+use crate::friction::patches::tolerance::Tolerance;
 
 const COLUMNS: usize = 6;
 const ROWS: usize = 4;
@@ -86,7 +88,7 @@ fn solved_with(tolerance: f64, alone: usize) -> Solved {
     let found = patches();
     let summary = |patch: &ContactPatch| PatchSummary { has_friction: true, ..patch.summary() };
     let mut summaries: Vec<_> = found.iter().map(summary).collect();
-    find_tolerances(&mut summaries, &start, tolerance, &mut Vec::new());
+    Tolerance::of_friction(tolerance).find(&mut summaries, &start, &mut Vec::new());
     let mut coupled: Vec<_> = (0..)
         .zip(found.iter().zip(&summaries))
         .filter(|(_, (_, summary))| summary.matters())
