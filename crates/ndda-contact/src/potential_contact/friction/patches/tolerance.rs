@@ -98,6 +98,7 @@ mod tests {
             torque_n_m: Vec3::zeros(),
             center: Vec3::zeros(),
             velocity_m_s: Vec3::zeros(),
+            prescribed_change_m_s: Vec3::zeros(),
             spin_rad_s: Vec3::zeros(),
             deforms: false,
         };
