@@ -130,3 +130,35 @@ fn the_toppling_template_is_accurate() {
         AtMost(1e-3),
     );
 }
+
+/// Contact damping of a block that deforms feeds its vibrations where steps are long for them, and the block slips where Coulomb's law holds it. The energy of a base that
+/// is shaken must not hide that.
+#[test]
+fn damping_that_feeds_a_block_on_a_shaken_base_is_not_hidden_by_the_energy_of_the_base() {
+    let mut rows = String::new();
+    for i in 1..=500 {
+        let t = 2e-3 * f64::from(i);
+        let w = 6.0 * std::f64::consts::PI;
+        // 0.325 g at 3 Hz, from rest.
+        let u = 0.325 * 9.81 / (w * w) * (w * t - (w * t).sin());
+        write!(rows, "(time_s: {t}, displacement_m: (0, {u:e}, 0)),").unwrap();
+    }
+    let label = |body: &str, restitution: f64| {
+        let mut simulation = simulation(&format!(
+            "(title: \"plate\", time: (step_s: 4e-5, end_s: 1), gravity_m_s2: (3.3552, 0, -9.2184), settle: (),
+              materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: 2650)],
+              blocks: [
+                (name: \"base\", material: \"rock\", body: Fixed, shape: Box(size_m: (2, 2, 0.2), cells: (2, 2, 1)), at_m: (-1, -1, -0.2)),
+                (name: \"plate\", material: \"rock\", body: {body}, shape: Box(size_m: (0.4, 0.4, 0.05), cells: (2, 2, 1)), at_m: (-0.2, -0.2, 0)),
+              ],
+              supports: [(block: \"base\", on: All, hold: Motion([(time_s: 0, displacement_m: (0, 0, 0)), {rows}]))],
+              contact: Potential(penalty_pa: 2e9, potential: Smooth(), restitution: {restitution}, friction: (friction_deg: 30)))"
+        ));
+        simulation.settle(&ndda_solver::Settle::new(1e-4, 40_000)).unwrap();
+        balance(&mut simulation, 25_000);
+        verdict::label(&simulation, None)
+    };
+    let fed = label("Elastic", 0.3);
+    assert!(fed.reasons.iter().any(|reason| reason.contains("contact damping")), "{:?}", fed.reasons);
+    assert_eq!(label("Rigid", 0.3).word, LabelWord::Accurate);
+}

@@ -23,6 +23,10 @@ const FALLS: f64 = 4.0 / 27.0;
 const ADVISED: f64 = 0.02;
 /// Most free blocks of a scene that are looked at: each is compared with all others.
 const MOST_BLOCKS: usize = 100;
+/// Part of the depth of a base below which a distance from its edge is rounding.
+const AT_THE_EDGE: f64 = 1e-9;
+/// Factor on the penalty beyond which none is advised.
+const MOST_RAISED: f64 = 1e6;
 /// Cosine and part of a block's size by which faces differ that lie on each other.
 const SAME_DIRECTION: f64 = 1.0 - 1e-9;
 const SAME_PLANE: f64 = 1e-3;
@@ -58,7 +62,10 @@ impl fmt::Display for Lean {
             )?,
             false => write!(f, "the block falls, although a rigid edge would hold it")?,
         }
-        write!(f, ": raise penalty_pa to {penalty_pa:.0e}")
+        match *m < MOST_RAISED * ADVISED {
+            true => write!(f, ": raise penalty_pa to {penalty_pa:.0e}"),
+            false => write!(f, ", but so close to the edge that no penalty decides whether it stands"),
+        }
     }
 }
 
@@ -243,7 +250,7 @@ impl Base {
             places.clone().fold(f64::MIN, f64::max) - places.fold(f64::MAX, f64::min)
         };
         let (width_m, across_m) = (extent(along), extent(Vec3::new(-along.y, along.x, 0.0)));
-        (corners.len() > 2 && inside_m > 0.0 && 3.0 * inside_m < across_m)
+        (corners.len() > 2 && inside_m > AT_THE_EDGE * across_m && 3.0 * inside_m < across_m)
             .then_some((inside_m, along, width_m))
     }
 }

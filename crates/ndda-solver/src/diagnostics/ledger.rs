@@ -45,6 +45,8 @@ pub struct Ledger {
     damping_gain_j: f64,
     removed_j: f64,
     peak_energy_j: f64,
+    /// Largest energy that blocks, contacts, springs and bolts stored [J].
+    peak_stored_j: f64,
     peak_momentum: f64,
     peak_angular: f64,
     largest_gain_j: f64,
@@ -132,6 +134,7 @@ impl Ledger {
             damping_gain_j: 0.0,
             removed_j: 0.0,
             peak_energy_j: 0.0,
+            peak_stored_j: 0.0,
             peak_momentum: 0.0,
             peak_angular: 0.0,
             largest_gain_j: 0.0,
@@ -308,9 +311,9 @@ impl Ledger {
             - sample.removed_j
             + (sample.bolt_work_j - start.bolt_work_j);
         sample.balance_j = sample.total_j() - start.total_j() - work_j;
-        let stored =
-            sample.kinetic_j + sample.strain_j.abs() + sample.contact_j + sample.spring_j + sample.bolt_j;
-        self.peak_energy_j = self.peak_energy_j.max(stored).max(sample.load_j.abs());
+        let stored_j = sample.strain_j.abs() + sample.contact_j + sample.spring_j + sample.bolt_j;
+        self.peak_stored_j = self.peak_stored_j.max(stored_j);
+        self.peak_energy_j = self.peak_energy_j.max(sample.kinetic_j + stored_j).max(sample.load_j.abs());
         self.largest_gain_j = self.largest_gain_j.max(sample.balance_j);
         self.largest_loss_j = self.largest_loss_j.max(-sample.balance_j);
         let h = if explicit_contact { self.worst.max_h } else { 0.0 };
@@ -337,6 +340,8 @@ impl Ledger {
         // Where nothing had a momentum, what loads and supports leave of each other is rounding.
         let kept = |error: f64, scale: f64| if scale > 0.0 { error / scale } else { 0.0 };
         let energy = |value_j: f64| over((value_j - self.rounding_j).max(0.0), self.peak_energy_j);
+        // A base that is moved gives its blocks an energy that says nothing of how they vibrate on it.
+        let damped_j = if self.motion_work_j == 0.0 { self.peak_energy_j } else { self.peak_stored_j };
         let scale_m_s = self.speed_scale_m_s();
         let (block_gain, block_loss) = self.blocks.lasting(scale_m_s, self.rounding_j);
         let (lateral_drift_speed, lateral_drift_place) =
@@ -351,7 +356,7 @@ impl Ledger {
             energy_gain: energy(self.largest_gain_j),
             energy_loss: energy(self.largest_loss_j),
             lasting_gain: energy(self.lasting_gain_j),
-            damping_gain: energy(self.damping_gain_j),
+            damping_gain: over((self.damping_gain_j - self.rounding_j).max(0.0), damped_j),
             lasting_loss: energy(self.lasting_loss_j),
             block_gain,
             block_loss,
