@@ -106,6 +106,21 @@ pub struct Body {
 }
 
 impl Body {
+    /// A block of this mass [kg] at rest at the origin, without loads, whose inertia is still to be given.
+    pub fn at_rest(mass_kg: f64) -> Self {
+        Self {
+            mass_kg,
+            inverse_inertia: Mat3::zeros(),
+            load_n: Vec3::zeros(),
+            torque_n_m: Vec3::zeros(),
+            center: Vec3::zeros(),
+            velocity_m_s: Vec3::zeros(),
+            prescribed_change_m_s: Vec3::zeros(),
+            spin_rad_s: Vec3::zeros(),
+            deforms: false,
+        }
+    }
+
     /// Adds a force at a point.
     pub fn push(&mut self, x: &Vec3, force_n: &Vec3) {
         self.load_n += force_n;
@@ -119,9 +134,9 @@ impl Body {
         }
     }
 
-    /// Takes the velocities to the end of a step under the loads, or as prescribed.
+    /// Takes the velocities to the end of a step under the loads.
     pub fn advance_velocity(&mut self, dt_s: f64) {
-        self.velocity_m_s += self.prescribed_change_m_s + dt_s / self.mass_kg * self.load_n;
+        self.velocity_m_s += dt_s / self.mass_kg * self.load_n;
         self.spin_rad_s += dt_s * (self.inverse_inertia * self.torque_n_m);
     }
 

@@ -144,7 +144,7 @@ struct Base {
     axes: [Vec3; 3],
 }
 
-/// What presses on a base near an edge.
+/// The resultant force on a base near an edge.
 struct Pressed {
     normal_n: f64,
     /// d and w [m].
@@ -214,7 +214,7 @@ impl Base {
         Some(Self { points: hull(points), origin, axes })
     }
 
-    /// What forces press the base by; none where they pull, where their line meets it outside, or where the strip at the edge is all of it.
+    /// The force on the base and the distance of its line from the nearest edge; none where they pull, where their line meets it outside, or where the strip at the edge is all of it.
     ///
     /// With heights h_i, places s_i, normal parts N_i and tangential parts T_i of the forces, the line meets the base at Σ (N_i s_i + h_i T_i)/N.
     /// A tilt of one radian about the edge with the outward direction e there moves that along e by Σ (N_i h_i − (s_i·e)(T_i·e))/N.

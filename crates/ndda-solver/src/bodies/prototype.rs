@@ -323,17 +323,9 @@ impl Prototype {
     /// The block's inertia for contact. Supports that leave no rigid motion make it immovable.
     pub(crate) fn contact_body(&self) -> ndda_contact::Body {
         let immovable = self.kind == BodyKind::Fixed || self.supports.hold_all_rigid_motions(&self.operator);
-        ndda_contact::Body {
-            mass_kg: if immovable { f64::INFINITY } else { self.operator.mass_kg },
-            inverse_inertia: Mat3::zeros(),
-            load_n: Vec3::zeros(),
-            torque_n_m: Vec3::zeros(),
-            center: Vec3::zeros(),
-            velocity_m_s: Vec3::zeros(),
-            prescribed_change_m_s: Vec3::zeros(),
-            spin_rad_s: Vec3::zeros(),
-            deforms: matches!(self.kind, BodyKind::Elastic | BodyKind::Affine),
-        }
+        let mass_kg = if immovable { f64::INFINITY } else { self.operator.mass_kg };
+        let deforms = matches!(self.kind, BodyKind::Elastic | BodyKind::Affine);
+        ndda_contact::Body { deforms, ..ndda_contact::Body::at_rest(mass_kg) }
     }
 
     /// Whether a block is this shape up to a rigid motion, with the same mesh and material.

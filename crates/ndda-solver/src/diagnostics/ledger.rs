@@ -339,7 +339,8 @@ impl Ledger {
         let over = |value: f64, scale: f64| if value == 0.0 { 0.0 } else { value / scale };
         // Where nothing had a momentum, what loads and supports leave of each other is rounding.
         let kept = |error: f64, scale: f64| if scale > 0.0 { error / scale } else { 0.0 };
-        let energy = |value_j: f64| over((value_j - self.rounding_j).max(0.0), self.peak_energy_j);
+        let of_energy = |value_j: f64, scale_j: f64| over((value_j - self.rounding_j).max(0.0), scale_j);
+        let energy = |value_j: f64| of_energy(value_j, self.peak_energy_j);
         // A base that is moved gives its blocks an energy that says nothing of how they vibrate on it.
         let damped_j = if self.motion_work_j == 0.0 { self.peak_energy_j } else { self.peak_stored_j };
         let scale_m_s = self.speed_scale_m_s();
@@ -356,7 +357,7 @@ impl Ledger {
             energy_gain: energy(self.largest_gain_j),
             energy_loss: energy(self.largest_loss_j),
             lasting_gain: energy(self.lasting_gain_j),
-            damping_gain: over((self.damping_gain_j - self.rounding_j).max(0.0), damped_j),
+            damping_gain: of_energy(self.damping_gain_j, damped_j),
             lasting_loss: energy(self.lasting_loss_j),
             block_gain,
             block_loss,

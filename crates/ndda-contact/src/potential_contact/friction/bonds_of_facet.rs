@@ -24,8 +24,8 @@ pub(crate) fn broken_part(bonds: &[Bond], blocks: &BlockSet, memory: Memory, wan
     (whole > 0.0).then_some(1.0 - whole)
 }
 
-/// What a bond bears of a force on its facet, of which each corner has its weight. Together the bonds of a facet bear that force where it acts; where one of them would
-/// have to be pulled for that, it bears nothing, and the others all of the force: their strengths add up to that of the facet.
+/// Share of one bond in a force on its facet, `weights` being the parts of the force at the corners of the facet. The shares add up to the force and act where it does,
+/// unless a share would be a pull: that bond then bears nothing, and the others bear the whole force.
 fn borne_of(own: impl Iterator<Item = [f64; 3]> + Clone, bears: &[f64; 3], weights: &[f64; 3]) -> f64 {
     let of =
         |bears: &[f64; 3]| -> f64 { bears.iter().zip(weights).map(|(part, weight)| part * weight).sum() };
@@ -38,7 +38,7 @@ fn borne_of(own: impl Iterator<Item = [f64; 3]> + Clone, bears: &[f64; 3], weigh
     if pressed > 0.0 { force.max(0.0) * (all / pressed).max(0.0) } else { 0.0 }
 }
 
-/// What the bond at a place of the list, in the order of keys, bears of a force on its facet, of which each corner has its weight.
+/// Share of the bond at index `place` in a force on its facet; bonds are sorted by their keys, so that those of a facet are neighbours.
 pub(crate) fn borne(
     bonds: &[Bond],
     place: usize,

@@ -245,6 +245,7 @@ impl FrictionPatches {
         let Self { is_asked, adjacency, patches, summaries, bodies, .. } = self;
         let is_nodal = |body: &Body| scene.input.deformation.is_some() && body.deforms;
         let advance = |(block, body): (usize, &mut Body)| {
+            body.velocity_m_s += body.prescribed_change_m_s;
             if is_asked[block] && body.mass_kg.is_finite() && !is_nodal(body) {
                 body.add_gyroscopic_torque();
                 for (k, sign) in adjacency.at(BlockId(block as u32)) {
@@ -255,8 +256,6 @@ impl FrictionPatches {
                     }
                 }
                 body.advance_velocity(scene.input.dt_s);
-            } else {
-                body.velocity_m_s += body.prescribed_change_m_s;
             }
         };
         bodies.par_iter_mut().enumerate().with_min_len(GRAIN_BODIES).for_each(advance);

@@ -77,8 +77,6 @@ impl Tolerance {
 
 #[cfg(test)]
 mod tests {
-    use ndda_mesh::{Mat3, Vec3};
-
     use super::*;
 
     /// Patches between a fixed block and two others, of 2 kg and 5 kg, with friction of 10 and 30 N.
@@ -91,18 +89,7 @@ mod tests {
             tolerance_n: 0.0,
         };
         let mut patches = [patch(1, 10.0), patch(2, 30.0)];
-        let body = |mass_kg: f64| Body {
-            mass_kg,
-            inverse_inertia: Mat3::zeros(),
-            load_n: Vec3::zeros(),
-            torque_n_m: Vec3::zeros(),
-            center: Vec3::zeros(),
-            velocity_m_s: Vec3::zeros(),
-            prescribed_change_m_s: Vec3::zeros(),
-            spin_rad_s: Vec3::zeros(),
-            deforms: false,
-        };
-        let bodies = [f64::INFINITY, 2.0, 5.0].map(body);
+        let bodies = [f64::INFINITY, 2.0, 5.0].map(Body::at_rest);
         tolerance.find(&mut patches, &bodies, &mut Vec::new());
         patches.map(|patch| patch.tolerance_n)
     }

@@ -13,17 +13,7 @@ fn bodies() -> Vec<Body> {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
     };
-    let held = Body {
-        mass_kg: f64::INFINITY,
-        inverse_inertia: Mat3::zeros(),
-        load_n: Vec3::zeros(),
-        torque_n_m: Vec3::zeros(),
-        center: Vec3::zeros(),
-        velocity_m_s: Vec3::zeros(),
-        prescribed_change_m_s: Vec3::zeros(),
-        spin_rad_s: Vec3::zeros(),
-        deforms: false,
-    };
+    let held = Body::at_rest(f64::INFINITY);
     let mut all = vec![held];
     for k in 0..COLUMNS * ROWS {
         all.push(Body {
