@@ -150,6 +150,59 @@ fn a_column_on_a_quiet_foot_comes_to_rest_in_a_stage_and_stays_there() {
     assert_eq!(outcome.summary.label.word, LabelWord::Accurate, "{:?}", outcome.summary.label.reasons);
 }
 
+/// Slip of a block of 1.5 m³ on a fixed one, over what the springs of the joint stretch by. It is pushed along by 0.7 of the friction that it has once
+/// a block like it is taken from on top of it, within one period of its own on the contact.
+fn slip_of_pushed_block(ramp: &str) -> (f64, Outcome) {
+    let (weight_n, shear_pa_m) = (1.5 * WEIGHT_N, 1e10);
+    let push_n = 0.7 * f64::tan(30f64.to_radians()) * weight_n;
+    // 1250 kg on springs of 2 k_n for each square metre.
+    let over_s = std::f64::consts::TAU * (0.5 * DENSITY / (2.0 * PENALTY_PA)).sqrt();
+    let rigid = |name: &str, body: &str, z: f64| {
+        format!(
+            "(name: \"{name}\", material: \"rock\", body: {body}, shape: Box(size_m: (3, 1, 0.5), cells: (1, 1, 1)), at_m: (0, 0, {z})),"
+        )
+    };
+    let outcome = run(&format!(
+        "(title: \"pushed\", time: (step_s: 1e-5, end_s: 1e-5), gravity_m_s2: (0, 0, -{GRAVITY}), settle: (tolerance: 1e-7),
+          materials: [(name: \"rock\", young_pa: {YOUNG_PA:e}, poisson: 0, density_kg_m3: {DENSITY})],
+          blocks: [{} {} {}],
+          contact: Potential(penalty_pa: {PENALTY_PA:e}, potential: Smooth(reference_m: 1), friction: (friction_deg: 30, shear_penalty_pa_m: {shear_pa_m:e})),
+          forces: [(block: \"mid\", force_n: ({push_n}, 0, 0))], monitors: [(name: \"mid\", block: \"mid\")],
+          stages: [(name: \"take\", remove: [\"top\"], over_s: {over_s}, reset_displacements: true, then: Settle(tolerance: 1e-7, ramp: {ramp}))],
+          output: (frames: 0))",
+        rigid("low", "Fixed", 0.0),
+        rigid("mid", "Rigid", 0.5),
+        rigid("top", "Rigid", 1.0),
+    ));
+    (outcome.monitor("mid").unwrap().displacement[0] / (push_n / (3.0 * shear_pa_m)), outcome)
+}
+
+#[test]
+fn a_damped_ramp_does_not_let_a_joint_slip_that_a_slow_one_would_hold() {
+    let (held, outcome) = slip_of_pushed_block("Damped");
+    // Facets at the rim, where pressure is least, give way to their neighbours.
+    row(
+        "stages",
+        "slip of a joint that is unloaded over a damped ramp, over the stretch of its springs",
+        held.abs(),
+        AtMost(1e-3),
+    );
+    let history = outcome.history.as_ref().unwrap();
+    let end_s = outcome.summary.stages[0].end_s;
+    assert_eq!(*values(history, "time_s").last().unwrap(), end_s);
+    row(
+        "stages",
+        "balance of energy across a damped ramp, over the energy that the removal released",
+        at(history, "balance_j", end_s).abs() / (1.5 * WEIGHT_N * 0.5 * WEIGHT_N / (2.0 * PENALTY_PA)),
+        // What is not friction, load or motion is booked as damping, so that rounding is left.
+        AtMost(1e-9),
+    );
+    assert_eq!(outcome.summary.label.word, LabelWord::Accurate, "{:?}", outcome.summary.label.reasons);
+    // Where motion is not damped, pressure falls below what it is at rest, and the joint slips.
+    let (slipped, _) = slip_of_pushed_block("Dynamic");
+    assert!(slipped > 0.02, "{slipped:e}");
+}
+
 #[test]
 fn a_prop_that_is_taken_away_over_ten_periods_leaves_no_motion_behind() {
     // A bar of 1 m between two supports, each of which bears half of its weight; ten periods 4 L/c.

@@ -41,7 +41,11 @@ fn what_is_no_record_is_refused_with_its_cure() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("pulse.at2"), pulse().replace("NPTS= 50", "NPTS= 51")).unwrap();
     std::fs::write(folder.path().join("table.csv"), "time_s,ax,ay\n0,1,2\n1,1,2\n").unwrap();
+    std::fs::write(folder.path().join("empty.csv"), "").unwrap();
+    std::fs::write(folder.path().join("head.csv"), "time_s,acceleration_m_s2\n").unwrap();
     for (args, word) in [
+        (vec!["empty.csv"], "it is empty: name the columns"),
+        (vec!["head.csv"], "it has no row of numbers: give two at least"),
         (vec!["pulse.at2"], "line 4 says 51"),
         (vec!["no.at2"], "cannot be read"),
         (vec!["table.csv"], "there is no column `acceleration_m_s2`; the first line names time_s, ax, ay"),
@@ -56,5 +60,33 @@ fn what_is_no_record_is_refused_with_its_cure() {
         let done = record(folder.path(), &args);
         let said = String::from_utf8_lossy(&done.stderr).into_owned();
         assert!(done.status.code() == Some(3) && said.contains(word), "{args:?}: {said}");
+    }
+}
+
+#[test]
+fn a_scene_whose_record_is_no_table_is_refused_where_it_names_the_file() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("quake.csv"), "time_s,acceleration_m_s2\n0,0\n0.1,abc\n").unwrap();
+    for (hold, path) in [
+        (
+            "Shaking([(direction: (1, 0, 0), record: (file: \"quake.csv\"))])",
+            "supports[0].hold[0][0].record.file",
+        ),
+        ("Acceleration(file: \"quake.csv\", direction: (1, 0, 0))", "supports[0].hold.file"),
+    ] {
+        let scene = format!(
+            "(title: \"shaken\", time: (step_s: 1e-3, end_s: 0.1), materials: [(name: \"rock\", young_pa: 1e9, poisson: 0.2, density_kg_m3: 2600)],
+              blocks: [(name: \"base\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)))],
+              supports: [(block: \"base\", on: All, hold: {hold})], contact: Off)"
+        );
+        std::fs::write(folder.path().join("shaken.ron"), scene).unwrap();
+        let done = Command::new(env!("CARGO_BIN_EXE_ndda"))
+            .args(["check", "shaken.ron"])
+            .current_dir(folder.path())
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&done.stderr).into_owned();
+        assert!(said.contains(&format!("{path}: ")) && said.contains("line 3 has no number"), "{said}");
+        assert!(said.contains("FILE` draws it"), "{said}");
     }
 }

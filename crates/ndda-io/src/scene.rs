@@ -67,7 +67,7 @@ pub use rockfall::{BoulderShape, BoulderSize, Boulders, CountingLine, Ground, Gr
 pub use rockfall::{ReleasePlace, Rockfall, RockfallDetail, RockfallRest, Scatter, Zone};
 pub use shaking::{AccelerationUnit, Baseline, Component, Record};
 pub use shape::{Fill, Grading, Pattern, Shape, Towards};
-pub use stage::{Stage, StageLaws, Then};
+pub use stage::{Ramp, Stage, StageLaws, Then};
 pub use support::{By, Hold, MotionRow, Region, Support};
 pub use time::{ContactAt, Integrator, Mass, Settle, SettleDamping, Solver, Step, Time};
 pub use water::{LinearPressure, Pressure, Water, Wet};

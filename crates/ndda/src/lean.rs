@@ -15,8 +15,9 @@ use ndda_solver::{BodyKind, Simulation};
 use crate::build;
 use crate::numbers::length;
 
-/// M beyond which the weight moves by more than 6 % of d.
-pub const MOST: f64 = 0.05;
+/// Part of d that the force may move by, and M at which it does.
+pub const MOST_MOVED: f64 = 0.06;
+const MOST: f64 = (1.0 - MOST_MOVED) * (1.0 - MOST_MOVED) * MOST_MOVED;
 /// M from which on it falls.
 const FALLS: f64 = 4.0 / 27.0;
 /// M with the penalty that is advised.
@@ -46,19 +47,27 @@ pub struct Lean {
     pub penalty_pa: f64,
 }
 
+impl Lean {
+    /// Part of d that the force moves by: all of it where the block falls.
+    pub fn moved(&self) -> f64 {
+        if self.m < FALLS { 1.0 - left(self.m) } else { 1.0 }
+    }
+}
+
 impl fmt::Display for Lean {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let Self { block, inside_m, m, penalty_pa } = self;
         let inside = length(*inside_m);
         write!(
             f,
-            "the weight of block `{block}` acts {inside} inside the edge of its base, and contact is too soft there: "
+            "the weight of block `{block}`, with the forces on it, acts {inside} inside the edge of its base, and contact is too soft there: "
         )?;
         match *m < FALLS {
             true => write!(
                 f,
-                "the block leans, and its weight moves {:.0} % of the way to the edge, limit 6 %",
-                100.0 * (1.0 - left(*m))
+                "the block leans, and that force moves {:.0} % of the way to the edge, limit {:.0} %",
+                100.0 * self.moved(),
+                100.0 * MOST_MOVED
             )?,
             false => write!(f, "the block falls, although a rigid edge would hold it")?,
         }

@@ -2568,6 +2568,22 @@ class Quiet(Builder):
     _kinds: ClassVar[Mapping[str, str]] = {"block": "str", "on": "Region", "beyond": "str", "layers": "[GroundLayer]", "incident": "[IncidentWave]"}
 
 
+class Ramp:
+    """How blocks move while forces and loads change in a stage that ends at rest.
+
+    Examples
+    --------
+    >>> Ramp.Dynamic
+    'Dynamic'
+    """
+
+    # As they would in this time: a change that is quick makes them oscillate.
+    Dynamic: ClassVar[Literal["Dynamic"]] = "Dynamic"
+    # Damped, as on the way to rest, so that they hardly oscillate, and the time need not be long. Rows,
+    # frames and the label leave these steps out.
+    Damped: ClassVar[Literal["Damped"]] = "Damped"
+
+
 @dataclass(kw_only=True)
 class Record(Builder):
     """A record of accelerations and what is done with it, in this order: unit and factor, filter, baseline.
@@ -4109,6 +4125,8 @@ class Then:
             Steps after which it is given up. Default: 1000000.
         damping : SettleDampingChoice, optional
             Damping on the way to rest. Default: `Kinetic`.
+        ramp : RampChoice, optional
+            How blocks move during `over_s`. Default: `Dynamic`.
 
         Examples
         --------
@@ -4119,7 +4137,8 @@ class Then:
         tolerance: float | None = None
         most_steps: int | None = None
         damping: SettleDampingChoice | None = None
-        _kinds: ClassVar[Mapping[str, str]] = {"tolerance": "num", "most_steps": "int", "damping": "SettleDamping"}
+        ramp: RampChoice | None = None
+        _kinds: ClassVar[Mapping[str, str]] = {"tolerance": "num", "most_steps": "int", "damping": "SettleDamping", "ramp": "Ramp"}
         _variant: ClassVar[str] = "Settle"
 
     @dataclass
@@ -4567,6 +4586,7 @@ PiecesChoice: TypeAlias = Pieces.Tetrahedra
 PotentialChoice: TypeAlias = Literal["Element"] | Potential.Smooth | Potential.Closure | Potential.Volume
 PrecisionChoice: TypeAlias = Literal["F32"] | Literal["F64"]
 PressureChoice: TypeAlias = Pressure.Level | Pressure.Linear | Pressure.Points | Pressure.Least
+RampChoice: TypeAlias = Literal["Dynamic"] | Literal["Damped"]
 RecordedAsChoice: TypeAlias = Literal["Upgoing"] | Literal["Outcrop"] | Literal["Within"]
 ReferenceChoice: TypeAlias = Reference.SlidingBlock | Reference.Collision | Reference.FreeFall | Reference.FreeSpin | Reference.BarImpact | Reference.Displacement
 RegionChoice: TypeAlias = Literal["All"] | Region.Plane | Region.Set
@@ -4648,6 +4668,7 @@ __all__ = [
     "Precision",
     "Pressure",
     "Quiet",
+    "Ramp",
     "Record",
     "RecordedAs",
     "Reference",

@@ -219,6 +219,11 @@ fn csv(file: &Path, bytes: &[u8], column: &str) -> Result<Vec<(f64, f64)>, Recor
     if let Some(fault) = csv_text::fault_of_header(&header) {
         return Err(table(fault));
     }
+    if header.is_empty() {
+        return Err(table(format!(
+            "it is empty: name the columns `{TIME}` and `{column}` in its first line, and write a row for each time"
+        )));
+    }
     let place = |name: &str| {
         let known = header.iter().collect::<Vec<_>>().join(", ");
         let found = header.iter().position(|column| column == name);
@@ -251,7 +256,8 @@ fn csv(file: &Path, bytes: &[u8], column: &str) -> Result<Vec<(f64, f64)>, Recor
         }
     }
     if rows.len() < 2 {
-        return Err(wrong(rows.len(), "is the last: a record has at least two rows"));
+        let has = if rows.is_empty() { "no row" } else { "one row" };
+        return Err(table(format!("it has {has} of numbers: give two at least")));
     }
     Ok(rows)
 }

@@ -95,9 +95,23 @@ pub enum Then {
         /// Damping on the way to rest. Default: `Kinetic`.
         #[serde(default)]
         damping: SettleDamping,
+        /// How blocks move during `over_s`. Default: `Dynamic`.
+        #[serde(default)]
+        ramp: Ramp,
     },
     /// So many seconds, `over_s` included.
     Run(f64),
+}
+
+/// How blocks move while forces and loads change in a stage that ends at rest.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub enum Ramp {
+    /// As they would in this time: a change that is quick makes them oscillate.
+    #[default]
+    Dynamic,
+    /// Damped, as on the way to rest, so that they hardly oscillate, and the time need not be long. Rows, frames and the label leave these steps out.
+    Damped,
 }
 
 fn tolerance() -> f64 {
@@ -112,11 +126,16 @@ impl Stage {
     /// How it comes to rest, if it does.
     pub fn settle(&self) -> Option<Settle> {
         match self.then {
-            Then::Settle { tolerance, most_steps, damping } => {
+            Then::Settle { tolerance, most_steps, damping, .. } => {
                 Some(Settle { tolerance, most_steps, damping, mass_scaling: false })
             }
             Then::Run(_) => None,
         }
+    }
+
+    /// Whether motion is damped while forces and loads change.
+    pub fn damps_ramp(&self) -> bool {
+        matches!(self.then, Then::Settle { ramp: Ramp::Damped, .. })
     }
 
     /// Its time [s].

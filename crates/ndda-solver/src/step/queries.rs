@@ -112,6 +112,23 @@ impl Simulation {
         (acceleration_m_s2 - gravity_m_s2).norm() < 1e-3 * gravity_m_s2.norm()
     }
 
+    /// Blocks that fall freely below every block that does not, along gravity: nothing is left on which they could land.
+    pub fn fallen_out(&self) -> Vec<BlockId> {
+        let down = self.problem.gravity_m_s2;
+        let depths =
+            |block: BlockId| self.blocks().nodes_of(block).map(|node| down.dot(&self.state.position[node]));
+        let (mut falling, mut lowest) = (Vec::new(), f64::NEG_INFINITY);
+        for block in self.blocks().ids().filter(|&block| !self.is_absent(block)) {
+            if self.falls_freely(block) {
+                falling.push(block);
+            } else {
+                lowest = depths(block).fold(lowest, f64::max);
+            }
+        }
+        falling.retain(|&block| lowest.is_finite() && depths(block).fold(f64::INFINITY, f64::min) > lowest);
+        falling
+    }
+
     /// Largest speed of the run so far [m/s].
     pub fn largest_speed_m_s(&self) -> f64 {
         self.audit.ledger.largest_speed_m_s()

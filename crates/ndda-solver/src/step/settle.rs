@@ -17,7 +17,8 @@ use crate::error::StepError;
 use crate::step::Simulation;
 use crate::step::local_damping::LocalDamping;
 use crate::step::oscillation::Oscillation;
-use crate::step::settling_step::SettlingStep;
+use crate::step::report::StepReport;
+use crate::step::settling_step::{Ramp, SettlingStep};
 
 /// Damping on the way to rest.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -166,9 +167,9 @@ impl Simulation {
         watch: &mut dyn FnMut(&Settled) -> ControlFlow<()>,
     ) -> Result<bool, StepError> {
         self.scale_masses_if(settle);
-        let rests = self.come_to_rest((settle, settling), 0.0, watch);
+        let rests = self.come_to_rest((settle, settling), &Ramp::default(), watch);
         self.unscale_masses();
-        if !rests? {
+        if rests?.is_none() {
             return Ok(false);
         }
         let force = std::mem::take(&mut self.scratch.force);
@@ -179,43 +180,45 @@ impl Simulation {
         Ok(true)
     }
 
-    /// Runs with damping until all blocks are at rest, while loads and prescribed motions are those of a time [s]; whether they came to rest
-    /// before somebody broke it off.
+    /// Runs with damping until all blocks are at rest, and loads and prescribed motions have gone through a ramp; gives the last step, or none where
+    /// somebody broke it off.
     fn come_to_rest(
         &mut self,
         (settle, settling): (&Settle, &mut Settling),
-        at_s: f64,
+        ramp: &Ramp,
         watch: &mut dyn FnMut(&Settled) -> ControlFlow<()>,
-    ) -> Result<bool, StepError> {
-        self.settling = Some(SettlingStep::new(at_s, 0.0));
+    ) -> Result<Option<StepReport>, StepError> {
+        let mut report = StepReport::default();
         let extent_m = Aabb::around(settling.from.iter()).diagonal();
-        while settling.settled.speed_ratio > settle.tolerance {
+        while settling.settled.steps < ramp.steps || settling.settled.speed_ratio > settle.tolerance {
             let Settled { steps, speed_ratio, .. } = settling.settled;
             let leaves = steps % LOOK == LOOK - 1 && self.farthest(&settling.from)[0].0 > extent_m;
             let stalled = settling.stalls();
             if steps == settle.most_steps || leaves || stalled.is_some() {
                 return Err(self.not_settled(settling, stalled));
             }
-            self.settling = Some(SettlingStep::new(at_s, speed_ratio.max(settle.tolerance)));
-            settling.settled.speed_ratio = settling.progress.step(self)?;
+            self.settling = Some(SettlingStep::new(ramp.at_s(steps), speed_ratio.max(settle.tolerance)));
+            (report, settling.settled.speed_ratio) = settling.progress.step(self)?;
             settling.settled.steps += 1;
             if watch(&settling.settled).is_break() {
-                return Ok(false);
+                return Ok(None);
             }
         }
-        Ok(true)
+        Ok(Some(report))
     }
 
-    /// Brings the scene to rest in the course of a run, time standing still, and goes on from there: displacements and what contact remembers
-    /// stay. What damping takes on the way is in the balance; diagnostics do not judge the way.
+    /// Brings the scene to rest in the course of a run, and goes on from there: displacements and what contact remembers stay. In the first
+    /// `ramp_steps` time goes on, damping included, and loads change with it; then time stands still. What damping takes on the way is in the
+    /// balance; diagnostics do not judge the way. Gives the last step, too.
     ///
     /// # Errors
     /// As [`settle`](Self::settle).
     pub fn settle_within(
         &mut self,
         settle: &Settle,
+        ramp_steps: u64,
         watch: &mut dyn FnMut(&Settled) -> ControlFlow<()>,
-    ) -> Result<Settled, StepError> {
+    ) -> Result<(Settled, StepReport), StepError> {
         let (step, (old, _)) = (self.state.step, self.look()?);
         let before = self.audit.ledger.clone();
         self.state.velocity.fill(Vec3::zeros());
@@ -224,13 +227,12 @@ impl Simulation {
         let moving_j = self.blocks().ids().filter(moves).map(|block| self.load_energy_j(block)).sum();
         let progress = Progress { moving_j, ..Progress::new(self, settle.damping) };
         let mut settling = Settling::new(self, progress, Vec::new());
-        let came_to_rest = self.come_to_rest((settle, &mut settling), self.time_s(), watch)?;
+        let ramp = Ramp { start_s: self.time_s(), step_s: self.step_s(), steps: ramp_steps };
+        let last = self.come_to_rest((settle, &mut settling), &ramp, watch)?;
         self.settling = None;
-        if !came_to_rest {
-            return Ok(settling.settled);
-        }
+        let Some(report) = last else { return Ok((settling.settled, StepReport::default())) };
         self.state.velocity.fill(Vec3::zeros());
-        self.state.step = step;
+        self.state.step = step + ramp_steps;
         let way = std::mem::replace(&mut self.audit.ledger, before);
         self.audit.ledger.begin_anew_at_contact();
         let kept_j = self.keep_reactions_of_rest()?;
@@ -243,7 +245,7 @@ impl Simulation {
             self.stop_past_centroid(&contact)?;
             self.audit.ledger.watch_depth(contact.max_penetration_ratio);
         }
-        Ok(settling.settled)
+        Ok((settling.settled, report))
     }
 
     /// How far the centre of each block has gone [m], the farthest first.
@@ -320,9 +322,9 @@ impl Progress {
         Self { damper, oscillation: Oscillation::default(), moving_j: 0.0, load_j, highest_j: load_j }
     }
 
-    /// A step; gives the speed that is left over the largest.
-    fn step(&mut self, simulation: &mut Simulation) -> Result<f64, StepError> {
-        match &mut self.damper {
+    /// A step; gives its report, and the speed that is left over the largest.
+    fn step(&mut self, simulation: &mut Simulation) -> Result<(StepReport, f64), StepError> {
+        let report = match &mut self.damper {
             Damper::Kinetic => simulation.step()?,
             Damper::Local(damping) => simulation.step_with_local_damping(damping)?,
         };
@@ -334,12 +336,12 @@ impl Progress {
                 if past_peak {
                     simulation.state.velocity.fill(Vec3::zeros());
                 }
-                Ok(ratio(self.oscillation.left_j(), self.scale_j()))
+                Ok((report, ratio(self.oscillation.left_j(), self.scale_j())))
             }
             Damper::Local(damping) => {
                 // Where an oscillation turns it is slow, and its forces are farthest from balance.
                 let unbalanced = ratio(damping.change_j(), self.load_j);
-                Ok(ratio(total_j, self.scale_j()).max(unbalanced))
+                Ok((report, ratio(total_j, self.scale_j()).max(unbalanced)))
             }
         }
     }

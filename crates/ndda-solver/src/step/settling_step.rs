@@ -20,3 +20,18 @@ impl SettlingStep {
         Self { at_s, friction_tolerance: (FRICTION * speed_ratio).min(MOST_FRICTION) }
     }
 }
+
+/// Times of loads on the way to rest: of so many steps, one after the other, then that at which these end.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Ramp {
+    pub start_s: f64,
+    pub step_s: f64,
+    pub steps: u64,
+}
+
+impl Ramp {
+    /// Time of the loads in the step after `steps` [s]: the middle of a step of the ramp.
+    pub(crate) fn at_s(&self, steps: u64) -> f64 {
+        self.start_s + self.step_s * (steps as f64 + 0.5).min(self.steps as f64)
+    }
+}

@@ -1,4 +1,4 @@
-//! Parts of a scene that do nothing: loads and supports of blocks that are not there, and records beyond the run or with gaps.
+//! Parts of a scene that do nothing: loads and supports of blocks that are not there, motions, blasts and records beyond the run, and records with gaps.
 
 use std::path::Path;
 
@@ -15,6 +15,7 @@ const MATTERS: f64 = 0.01;
 /// What does nothing, in words.
 pub fn findings(scene: &Scene, blocks: &BlockSet, folder: &Path) -> Vec<String> {
     let mut found = absent(scene, blocks);
+    found.extend(too_late(scene));
     found.extend(records(scene, folder));
     found
 }
@@ -77,6 +78,23 @@ fn absent(scene: &Scene, blocks: &BlockSet) -> Vec<String> {
         }
     }
     found
+}
+
+/// Motions and blasts that begin after the end of the run.
+fn too_late(scene: &Scene) -> Vec<String> {
+    let end_s = build::all_steps(scene) as f64 * scene.time.step_s;
+    let motions = scene.supports.iter().enumerate().filter_map(|(i, support)| {
+        let Hold::Motion(rows) = &support.hold else { return None };
+        let moves = rows.windows(2).find(|two| two[0].displacement_m != two[1].displacement_m)?;
+        Some((format!("supports[{i}].hold"), "moves", moves[0].time_s))
+    });
+    let blasts = scene.blasts.iter().enumerate();
+    let blasts = blasts.map(|(i, blast)| (format!("blasts[{i}]"), "detonates", blast.start_s));
+    let late = motions.chain(blasts).filter(|(.., from_s)| *from_s >= end_s);
+    late.map(|(path, does, from_s)| {
+        format!("{path} has no effect: it {does} from {from_s:.4} s on, after the end of the run at {end_s:.4} s: raise time.end_s, or begin sooner")
+    })
+    .collect()
 }
 
 /// Records that the run does not use to their end, or that have gaps.
@@ -192,6 +210,21 @@ mod tests {
             stages: [(name: \"in\", add: [\"top\"], then: Run(2e-4))]",
         );
         assert_eq!(found(&text), Vec::<String>::new());
+    }
+
+    #[test]
+    fn a_motion_and_a_blast_after_the_end_of_the_run_are_named_and_those_within_are_not() {
+        let at = |late_s: f64, start_s: f64| {
+            found(&column(&format!(
+                "supports: [(block: \"foot\", on: All, hold: Motion([
+                    (time_s: 0, displacement_m: (0, 0, 0)), (time_s: {late_s}, displacement_m: (0, 0, 0)), (time_s: 1, displacement_m: (0.1, 0, 0))]))],
+                blasts: [(block: \"top\", on: Part(All), pressure: Rows([(0, 0), (1e-3, 1e3)]), start_s: {start_s})]"
+            )))
+        };
+        assert_eq!(at(5e-4, 0.0), Vec::<String>::new());
+        let late = at(0.5, 0.2);
+        assert!(late[0].starts_with("supports[0].hold has no effect: it moves from 0.5000 s on"), "{late:?}");
+        assert!(late[1].starts_with("blasts[0] has no effect: it detonates from 0.2000 s on"), "{late:?}");
     }
 
     #[test]

@@ -114,9 +114,9 @@ pub fn summarise(simulation: &Simulation, recorder: &Recorder, ending: Ending) -
 /// than the elements over which penetration is judged.
 fn at_the_start(scene: &Scene, simulation: &Simulation) -> Vec<Finding> {
     let lean = lean::worst(scene, simulation).map(|lean| Finding {
-        what: "lean over an edge that gives way",
-        value: lean.m,
-        limit: lean::MOST,
+        what: "shift of a weight towards an edge / its distance",
+        value: lean.moved(),
+        limit: lean::MOST_MOVED,
         reason: lean.to_string(),
     });
     let deep = doubts::depth(scene, simulation).map(|(overlap, reason)| Finding {

@@ -133,7 +133,8 @@ fn accelerates(summary: &Summary) -> bool {
 
 /// Which blocks moved, and how far.
 pub fn moved(motion: &Motion) -> String {
-    let Motion { can_move, moved, farthest, farthest_m, speed_m_s, course } = motion;
+    let Motion { can_move, moved, farthest, farthest_m, speed_m_s, course, fallen_out } = motion;
+    let fallen_out = fallen_out_in_words(fallen_out);
     let course = match course {
         Course::AtRest => "at rest".to_string(),
         Course::Moving => match speed(*speed_m_s) {
@@ -147,7 +148,7 @@ pub fn moved(motion: &Motion) -> String {
     if *moved == 0 && motion.course == Course::Accelerating {
         let (gone, speed) = (length(*farthest_m), speed(*speed_m_s));
         return format!(
-            "`{farthest}` is accelerating: {gone} at the end, less than 1 % of its radius, {speed}\n"
+            "`{farthest}` is accelerating: {gone} at the end, less than 1 % of its radius, {speed}\n{fallen_out}"
         );
     }
     let many = match (moved, can_move) {
@@ -155,7 +156,19 @@ pub fn moved(motion: &Motion) -> String {
         (0, _) => format!("none of {can_move} movable blocks moved by more than 1 % of its radius"),
         _ => format!("{moved} of {} moved", counted(*can_move, "movable block", "movable blocks")),
     };
-    format!("{many}; farthest `{farthest}`: {} at the end, {course}\n", length(*farthest_m))
+    format!("{many}; farthest `{farthest}`: {} at the end, {course}\n{fallen_out}", length(*farthest_m))
+}
+
+/// Blocks that nothing can hold any more, if there are any, in a line.
+fn fallen_out_in_words(blocks: &[String]) -> String {
+    let [first, others @ ..] = blocks else { return String::new() };
+    let who = match others.len() {
+        0 => format!("`{first}` has"),
+        more => format!("`{first}` and {} have", counted(more, "other block", "other blocks")),
+    };
+    format!(
+        "{who} fallen out of the model, below everything else: extend the ground, or end the run sooner\n"
+    )
 }
 
 /// A speed in m/s, or in a smaller unit if it is below a centimetre in a second.

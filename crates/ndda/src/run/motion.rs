@@ -109,6 +109,7 @@ impl LargestMotions {
             farthest_m: distance_m,
             speed_m_s,
             course,
+            fallen_out: simulation.fallen_out().iter().map(|out| blocks.names[out.index()].clone()).collect(),
         })
     }
 }
@@ -299,6 +300,27 @@ mod tests {
         assert!(cube.largest_m >= cube.farthest_m);
         let motion = summary.motion.unwrap();
         assert_eq!((motion.can_move, motion.moved, motion.farthest.as_str()), (1, 1, "cube"));
-        assert_eq!(motion.course, Course::Accelerating);
+        assert_eq!((motion.course, motion.fallen_out), (Course::Accelerating, Vec::new()));
+    }
+
+    #[test]
+    fn a_block_that_misses_the_floor_and_falls_past_it_is_said_to_have_fallen_out() {
+        let run = |end_s: f64| {
+            let text = format!(
+                "(title: \"over the rim\", time: (step_s: 1e-3, end_s: {end_s}), gravity_m_s2: (0, 0, -10),
+                materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: 2600)],
+                blocks: [(name: \"cube\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), at_m: (4, 0, 0)),
+                         (name: \"stays\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), at_m: (1, 1, 0)),
+                         (name: \"floor\", material: \"rock\", body: Fixed, shape: Box(size_m: (3, 3, 1), cells: (1, 1, 1)), at_m: (0, 0, -1))],
+                contact: Potential(friction: (friction_deg: 30)))"
+            );
+            let summary = Run::new(Model::from_text(&text).unwrap()).finish(&mut []).unwrap().summary;
+            (summary.motion.clone().unwrap().fallen_out, crate::judge::table::moved(&summary.motion.unwrap()))
+        };
+        // Its upper face is 2 m above the floor's lower one, which it passes after √(2·2/10) = 0.632 s.
+        assert!(run(0.62).0.is_empty());
+        let (fallen_out, words) = run(0.65);
+        assert_eq!(fallen_out, ["cube"]);
+        assert!(words.contains("`cube` has fallen out of the model"), "{words}");
     }
 }

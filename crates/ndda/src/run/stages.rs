@@ -87,20 +87,23 @@ impl Course<'_> {
         Ok(())
     }
 
-    /// Steps up to the last of a stage, and brings the scene to rest before that is shown. A run that is ended on the way goes on from before it.
+    /// Steps up to the last of a stage, and brings the scene to rest before that is shown; where motion is damped from the start of the stage, it is brought
+    /// to rest from there. A run that is ended on the way goes on from before it.
     fn to_rest(
         &self,
         simulation: &mut Simulation,
         outputs: &mut Outputs,
         (settle, end, steps): (&Settle, u64, u64),
     ) -> Result<ControlFlow<()>, RunError> {
-        if ndda_solver::advance(simulation, (end - 1, steps), &mut [&mut *outputs])?.is_break() {
+        let stage = &self.loaded.scene.stages[outputs.stages.at - 1];
+        let damps_ramp = stage.damps_ramp();
+        if !damps_ramp && ndda_solver::advance(simulation, (end - 1, steps), &mut [&mut *outputs])?.is_break()
+        {
             return Ok(ControlFlow::Break(()));
         }
         outputs.checkpoint(simulation).map_err(|error| RunError::Sink(Box::new(error)))?;
         let before = simulation.snapshot();
-        let name = &self.loaded.scene.stages[outputs.stages.at - 1].name;
-        let mut rest = Watch::new(Some(name), settle.tolerance);
+        let mut rest = Watch::new(Some(&stage.name), settle.tolerance);
         let ranks = simulation.ranks().clone();
         let mut watch = |settled: &Settled| {
             // How it came to rest is said with the end of the stage.
@@ -109,14 +112,18 @@ impl Course<'_> {
             }
             unless_ended(&*ranks, self.stop)
         };
-        let report = ndda_solver::unseen_step(simulation, &mut [&mut *outputs])?;
-        let settled = simulation.settle_within(&build::settle(*settle), &mut watch)?;
+        if !damps_ramp {
+            ndda_solver::unseen_step(simulation, &mut [&mut *outputs])?;
+        }
+        let ramp_steps = end - simulation.state().step;
+        let rest_of = build::settle(*settle);
+        let (settled, report) = simulation.settle_within(&rest_of, ramp_steps, &mut watch)?;
         if self.stop.load(Ordering::Relaxed) {
             let restored = simulation.restore(before);
             restored.expect("it is of this simulation");
             return Ok(ControlFlow::Break(()));
         }
-        outputs.stages.settling_steps = settled.steps;
+        outputs.stages.settling_steps = settled.steps - ramp_steps;
         ndda_solver::show(simulation, steps, &report, &mut [&mut *outputs])
     }
 }

@@ -26,6 +26,9 @@ pub struct Motion {
     pub speed_m_s: f64,
     /// Whether it moves at the end.
     pub course: Course,
+    /// Blocks that fall freely below all others at the end, so that nothing is left on which they could land.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub fallen_out: Vec<String>,
 }
 
 /// How a block moves at the end of a run.

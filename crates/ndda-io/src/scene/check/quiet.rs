@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::Check;
 use crate::scene::code::Code;
+use crate::scene::record::{Prepared, RecordError};
 use crate::scene::{BlastPressure, BlastWall, Body, IncidentWave, Quiet, Record, RecordedAs, WaveKind};
 
 impl Check<'_> {
@@ -104,6 +105,7 @@ impl Check<'_> {
     }
 
     pub(super) fn record(&mut self, path: &str, record: &Record, folder: Option<&Path>) {
+        let before = self.found.len();
         self.file(format!("{path}.file"), &record.file, folder);
         self.numbers(&format!("{path}.factor"), &[record.factor]);
         if let Some(spacing_s) = record.resample_s {
@@ -119,6 +121,26 @@ impl Check<'_> {
                 message,
                 "such as (0.1, 25); a low of 0 lets low frequencies pass",
             );
+        }
+        if self.found.len() == before {
+            self.table_of_record(format!("{path}.file"), &record.file, folder, |folder| {
+                record.prepared(folder)
+            });
+        }
+    }
+
+    /// What the file of a record says, if it is there.
+    pub(super) fn table_of_record(
+        &mut self,
+        path: String,
+        file: &str,
+        folder: Option<&Path>,
+        read: impl Fn(&Path) -> Result<Prepared, RecordError>,
+    ) {
+        let Some(folder) = folder.filter(|folder| folder.join(file).is_file()) else { return };
+        if let Err(error) = read(folder) {
+            let help = "a record is a table with the columns time_s and acceleration_m_s2, or an AT2 file; `ndda record FILE` draws it";
+            self.report(Code::CannotBuild, path, error.to_string(), help);
         }
     }
 

@@ -125,7 +125,7 @@ impl Check<'_> {
                     self.error(path("then"), message, "at most 1e9 steps are taken: make the stage shorter");
                 }
             }
-            Then::Settle { tolerance, most_steps, damping } => {
+            Then::Settle { tolerance, most_steps, damping, .. } => {
                 if !(0.0 < tolerance && tolerance < 1.0) {
                     let message = format!("{tolerance}: must be between 0 and 1");
                     self.error(

@@ -5,6 +5,7 @@ use std::path::Path;
 use super::Check;
 use crate::scene::MotionRow;
 use crate::scene::code::Code;
+use crate::scene::record::Prepared;
 use crate::scene::{By, Hold, Region};
 
 impl Check<'_> {
@@ -25,6 +26,9 @@ impl Check<'_> {
                     self.direction(path("hold.direction"), direction);
                     self.numbers(&path("hold.factor"), &[*factor]);
                     self.file(path("hold.file"), file, folder);
+                    self.table_of_record(path("hold.file"), file, folder, |folder| {
+                        Prepared::as_written(&folder.join(file))
+                    });
                 }
                 Hold::Shaking(components) => {
                     if components.is_empty() {
