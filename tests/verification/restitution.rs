@@ -5,7 +5,7 @@ use ndda::judge::verdict;
 use ndda::summary::LabelWord;
 use ndda_contact::testing::Random;
 use ndda_mesh::{BlockId, Vec3};
-use ndda_solver::Simulation;
+use ndda_solver::{Settle, Simulation};
 
 use crate::evidence::Answer::{AtLeast, AtMost, Near, Within};
 use crate::evidence::{rounding, row};
@@ -405,4 +405,62 @@ fn a_block_creeps_against_its_dashpots_at_the_same_speed_whatever_the_step() {
             row(CASE, &what, found / fine, Near(1.0, 0.01));
         }
     }
+}
+
+/// A plate of 4 × 4 × 0.02 m on a fixed one, so flat that it does not rock, at rest, that is given 1 mm/s along it: the speed at which it passes its place again after half an oscillation on
+/// the shear springs, over that.
+fn shear_rebound(normal: f64, shear: &str, body: &str, h: f64) -> f64 {
+    let (shear_pa_m, area_m2, mass_kg) = (1e9f64, 16.0, DENSITY_KG_M3 * 0.32);
+    let step_s = h / (shear_pa_m * area_m2 / mass_kg).sqrt();
+    let mut simulation = simulation(&format!(
+        "(title: \"plate\", time: (step_s: {step_s:e}, end_s: {:e}), gravity_m_s2: (0, 0, -10),
+          materials: [(name: \"rock\", young_pa: 60e9, poisson: 0, density_kg_m3: {DENSITY_KG_M3})],
+          blocks: [(name: \"base\", material: \"rock\", body: Fixed, shape: Box(size_m: (6, 6, 1), cells: (1, 1, 1)), at_m: (-1, -1, -1)),
+                   (name: \"plate\", material: \"rock\", body: {body}, shape: Box(size_m: (4, 4, 0.02), cells: (2, 2, 1)), velocity_m_s: (1e-3, 0, 0))],
+          contact: Potential(penalty_pa: 1e9, potential: Smooth(), restitution: {normal}, {shear} friction: (friction_deg: 60, shear_penalty_pa_m: {shear_pa_m:e})))",
+        1e4 * step_s
+    ));
+    simulation.settle(&Settle::new(1e-3, 1_000_000)).unwrap();
+    let nodes = simulation.blocks().nodes_of(BlockId(1));
+    let mean = |values: &[Vec3]| values[nodes.clone()].iter().map(|v| v.x).sum::<f64>() / nodes.len() as f64;
+    let start_m = mean(&simulation.state().position);
+    let (mut gone_m, mut speed_m_s) = (0.0, 1e-3);
+    for _ in 0..(4.0 * std::f64::consts::PI / h) as u64 {
+        simulation.step().unwrap();
+        let (now_m, now_m_s) =
+            (mean(&simulation.state().position) - start_m, mean(&simulation.state().velocity));
+        if now_m <= 0.0 {
+            let part = gone_m / (gone_m - now_m);
+            return -(speed_m_s + part * (now_m_s - speed_m_s)) / 1e-3;
+        }
+        (gone_m, speed_m_s) = (now_m, now_m_s);
+    }
+    panic!("the plate does not come back")
+}
+
+#[test]
+fn half_an_oscillation_on_a_shear_spring_leaves_the_coefficient_along_the_face_whatever_the_normal_one() {
+    let found = |normal: f64, e: f64, body: &str, h: f64| {
+        shear_rebound(normal, &format!("shear_restitution: {e},"), body, h)
+    };
+    for body in ["Rigid", "Affine", "Elastic"] {
+        for (normal, e) in [(1.0, 0.3), (0.5, 0.6), (0.5, 0.9), (0.9, 0.1)] {
+            let what =
+                format!("rebound along the face, e = {e}, {normal} along the normal, {body}, ω Δt = 0.01");
+            row(CASE, &what, found(normal, e, body, 0.01), Near(e, 1e-2));
+        }
+    }
+    // Dashpots are found to first order in the step.
+    let [long, short] = [0.04, 0.02].map(|h| found(0.9, 0.1, "Rigid", h) - 0.1);
+    row(
+        CASE,
+        "order of the rebound along the face in the step, e = 0.1",
+        (long / short).log2(),
+        Near(1.0, 0.15),
+    );
+    // Without one of its own, springs are damped by the α of the normal, 1.67 for 0.3: ζ = α/2.
+    let zeta = 0.5 * 1.67f64;
+    let expected = (-std::f64::consts::PI * zeta / (1.0 - zeta * zeta).sqrt()).exp();
+    let what = "rebound along the face, e = 0.3 along the normal alone";
+    row(CASE, what, shear_rebound(0.3, "", "Rigid", 0.01), Near(expected, 1e-2));
 }

@@ -160,3 +160,26 @@ fn settling_with_scaled_masses_goes_on_from_a_snapshot_with_the_same_bits() {
     assert!(second.go_on_settling(&settle, &mut settling, &mut |_| ControlFlow::Continue(())).unwrap());
     assert_eq!(second.state().position, whole.state().position);
 }
+
+/// A plate that lies flat on shear springs, after three oscillations, moves by rounding alone.
+#[test]
+fn what_only_rounding_moves_is_at_rest_whatever_the_step() {
+    for step_s in [5e-6, 3.5e-6, 1e-5] {
+        let mut simulation = simulation(&format!(
+            "(title: \"plate\", time: (step_s: {step_s}, end_s: 1), gravity_m_s2: (0, 0, -10),
+              materials: [(name: \"rock\", young_pa: 60e9, poisson: 0, density_kg_m3: 2500)],
+              blocks: [(name: \"base\", material: \"rock\", body: Fixed, shape: Box(size_m: (6, 6, 1), cells: (1, 1, 1)), at_m: (-1, -1, -1)),
+                       (name: \"plate\", material: \"rock\", body: Rigid, shape: Box(size_m: (4, 4, 0.2), cells: (2, 2, 1)))],
+              contact: Potential(penalty_pa: 1e9, potential: Smooth(), friction: (friction_deg: 60, shear_penalty_pa_m: 1e9)))"
+        ));
+        let settled = simulation.settle(&Settle::new(1e-6, 100_000)).unwrap();
+        // A quarter of its period is ½ π √(m L₀/2 k_n A); each stop leaves h of the oscillation, the first of gravity.
+        let quarter = 0.5 * std::f64::consts::PI * (2500.0 * 0.2 / 2e9f64).sqrt() / step_s;
+        row(
+            "settling",
+            &format!("quarters of a period in which a plate comes to rest, Δt = {step_s:e} s"),
+            settled.steps as f64 / quarter,
+            AtMost(30.0),
+        );
+    }
+}

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use ndda::{Model, choose, examples, forecast};
+use ndda_io::diagnostic::SceneErrors;
 use ndda_io::read::{self, LoadedScene};
 
 use crate::args::SceneArgs;
@@ -21,11 +22,10 @@ pub fn file(args: &SceneArgs) -> PathBuf {
 /// # Errors
 /// The exit code, after the reason has been printed: what is wrong with the scene, or which examples there are.
 pub fn model(args: &SceneArgs, events: Events) -> Result<Model, u8> {
-    let (loaded, file) = (scene(args, events)?, file(args));
-    let folder =
-        if args.example.is_some() { Path::new(".") } else { file.parent().unwrap_or(Path::new(".")) };
-    warn_of_slow_build(&loaded, folder);
-    Model::new(loaded, folder).map_err(|errors| events.refuse(&errors))
+    let loaded = read(args, events)?.map_err(|errors| events.refuse(&errors))?;
+    let folder = folder(args);
+    warn_of_slow_build(&loaded, &folder);
+    Model::new(loaded, &folder).map_err(|errors| events.refuse(&errors))
 }
 
 /// Reads and checks a scene; it is built only where its penalty or step is to be chosen.
@@ -33,16 +33,21 @@ pub fn model(args: &SceneArgs, events: Events) -> Result<Model, u8> {
 /// # Errors
 /// As [`model`].
 pub fn scene(args: &SceneArgs, events: Events) -> Result<LoadedScene, u8> {
+    let complete = |loaded| choose::complete(loaded, &folder(args));
+    read(args, events)?.and_then(complete).map_err(|errors| events.refuse(&errors))
+}
+
+/// Folder that the files of a scene are in.
+fn folder(args: &SceneArgs) -> PathBuf {
     let file = file(args);
-    let loaded = match &args.example {
-        None => read::load(&file, &args.overrides),
-        Some(name) => {
-            read::load_text(&file.display().to_string(), text(name, events)?, &args.overrides, None)
-        }
-    };
-    let folder = if args.example.is_some() { None } else { file.parent() };
-    let complete = |loaded| choose::complete(loaded, folder.unwrap_or(Path::new(".")));
-    loaded.and_then(complete).map_err(|errors| events.refuse(&errors))
+    file.parent().filter(|_| args.example.is_none()).unwrap_or(Path::new(".")).to_path_buf()
+}
+
+/// The scene as it is written.
+fn read(args: &SceneArgs, events: Events) -> Result<Result<LoadedScene, SceneErrors>, u8> {
+    let (file, name) = (file(args), args.example.as_deref());
+    let Some(name) = name else { return Ok(read::load(&file, &args.overrides)) };
+    Ok(read::load_text(&file.display().to_string(), text(name, events)?, &args.overrides, None))
 }
 
 /// Prints the warnings of a scene, if it has any.

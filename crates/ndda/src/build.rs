@@ -24,7 +24,7 @@ use std::path::Path;
 
 use ndda_contact::{
     BatchFriction, ClosurePotential, ContactModel, ContactPotential, ElementPotential, Memory,
-    PotentialContact, SmoothPotential, VolumePotential,
+    PotentialContact, Restitution, SmoothPotential, VolumePotential,
 };
 use ndda_fem::Table;
 use ndda_io::scene::{self, Contact, Integrator, Scene};
@@ -289,13 +289,19 @@ pub(crate) fn contact_model(
             rock_joints,
             memory,
             restitution,
+            shear_restitution,
             ..
         }) => {
             let potential = choices.potential.take().unwrap_or_else(|| contact_potential(potential));
-            potential.field(blocks).map_err(|e| Fault::new("contact.potential", e))?;
             let mut model = PotentialContact::new(*penalty_pa).with_potential(potential);
-            let restitution = restitution_table(scene, blocks, *restitution, (material_pairs, rock_joints));
-            model = model.with_restitution(restitution);
+            model.fit_potential(blocks).map_err(|e| Fault::new("contact.potential", e))?;
+            let everywhere = Restitution { normal: *restitution, shear: *shear_restitution };
+            model = model.with_restitution(restitution_table(
+                scene,
+                blocks,
+                everywhere,
+                (material_pairs, rock_joints),
+            ));
             if let Some(broad_phase) = choices.broad_phase.take() {
                 model = model.with_broad_phase(broad_phase);
             }

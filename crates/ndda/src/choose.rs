@@ -14,6 +14,8 @@
 //! hundredth of the run, a tenth of the ramp of gravity and of the shortest time between rows of loads, a tenth of the height of a
 //! tetrahedron at the largest initial speed, and a twentieth of a radian of rotation.
 
+mod rounded;
+
 use std::path::Path;
 
 use ndda_io::diagnostic::{Diagnostic, SceneErrors};
@@ -23,9 +25,10 @@ use ndda_io::scene::{Contact, FactorRow, Potential, Scene, Stress, is_unset};
 use ndda_mesh::geometry::{Aabb, tet_volume, triangle_area_vector};
 use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
 
-use crate::build::{self, Fault};
+use crate::build::{self, Fault, RockReport};
 use crate::forecast::held::NOTHING_MOVES;
 use crate::forecast::{admit, step};
+use rounded::{metres, rounded_down, rounded_up};
 
 /// Part of the volume that is in blocks smaller than the size that counts.
 const SMALL: f64 = 0.05;
@@ -46,13 +49,24 @@ const TURN: f64 = 0.05;
 /// Height over width of blocks from which on they are columns, nearly.
 const SLENDER: f64 = 3.0;
 
+/// Blocks, and what rock was cut into.
+type Cut = (BlockSet, Vec<RockReport>);
+
 /// The scene with all values that it leaves out; the scene itself where it leaves out none.
 ///
 /// # Errors
 /// Errors of its blocks, and of the scene with what was chosen.
 pub fn complete(loaded: LoadedScene, folder: &Path) -> Result<LoadedScene, SceneErrors> {
+    complete_on_blocks(loaded, folder).map(|(loaded, _)| loaded)
+}
+
+/// As [`complete`], with the blocks and what rock was cut into, where values were chosen on them.
+pub(crate) fn complete_on_blocks(
+    loaded: LoadedScene,
+    folder: &Path,
+) -> Result<(LoadedScene, Option<Cut>), SceneErrors> {
     if loaded.is_complete() {
-        return Ok(loaded);
+        return Ok((loaded, None));
     }
     let located = |faults: Vec<Fault>| {
         let diagnostics: Vec<Diagnostic> =
@@ -60,7 +74,7 @@ pub fn complete(loaded: LoadedScene, folder: &Path) -> Result<LoadedScene, Scene
         loaded.errors(diagnostics)
     };
     admit::admit(&loaded, folder).map_err(|refused| loaded.errors(vec![refused]))?;
-    let blocks = build::blocks(&loaded.scene, folder).map_err(located)?;
+    let (mut blocks, rock) = build::blocks_and_rock(&loaded.scene, folder).map_err(located)?;
     let mut scene = loaded.scene.clone();
     let sizes = Sizes::new(&scene, &blocks);
     let mut chosen = Vec::new();
@@ -68,9 +82,11 @@ pub fn complete(loaded: LoadedScene, folder: &Path) -> Result<LoadedScene, Scene
         chosen.push(choice);
     }
     if is_unset(&scene.time.step_s) {
-        chosen.push(step_of(&mut scene, &sizes, blocks, folder).map_err(located)?);
+        let (choice, used) = step_of(&mut scene, &sizes, blocks, folder).map_err(located)?;
+        chosen.push(choice);
+        blocks = used;
     }
-    loaded.with_chosen(chosen, folder)
+    Ok((loaded.with_chosen(chosen, folder)?, Some((blocks, rock))))
 }
 
 /// The values that were chosen, as `path=value`.
@@ -313,8 +329,13 @@ fn penalty(scene: &mut Scene, sizes: &Sizes) -> Option<Chosen> {
     Some(Chosen { path: "contact.penalty_pa".into(), value: *penalty_pa, reason: why })
 }
 
-/// Chooses the step.
-fn step_of(scene: &mut Scene, sizes: &Sizes, blocks: BlockSet, folder: &Path) -> Result<Chosen, Vec<Fault>> {
+/// Chooses the step, and gives the blocks back.
+fn step_of(
+    scene: &mut Scene,
+    sizes: &Sizes,
+    blocks: BlockSet,
+    folder: &Path,
+) -> Result<(Chosen, BlockSet), Vec<Fault>> {
     let end_s = scene.time.end_s;
     let mut limits = vec![(end_s / FEWEST_STEPS, "a hundredth of the run".to_string())];
     if scene.gravity_ramp_s > 0.0 {
@@ -346,46 +367,13 @@ fn step_of(scene: &mut Scene, sizes: &Sizes, blocks: BlockSet, folder: &Path) ->
     let least = limits.into_iter().reduce(|a, b| if b.0 < a.0 { b } else { a });
     let (step_s, reason) = least.expect("there is one limit at least");
     scene.time.step_s = rounded_down(step_s);
-    Ok(Chosen { path: "time.step_s".into(), value: scene.time.step_s, reason })
-}
-
-/// A length in metres with two digits.
-fn metres(length_m: f64) -> String {
-    if (0.01..1e4).contains(&length_m) { format!("{length_m:.2} m") } else { format!("{length_m:.1e} m") }
-}
-
-/// The largest of 1, 2 and 5 times a power of ten that is not above a value.
-fn rounded_down(value: f64) -> f64 {
-    let exponent = value.log10().floor() as i32;
-    let digits = (1.0 + 1e-12) * value / 10f64.powi(exponent);
-    let digit = [5, 2, 1].into_iter().find(|digit| f64::from(*digit) <= digits).unwrap_or(1);
-    // Read from its digits, so that it is the number that a person would write.
-    format!("{digit}e{exponent}").parse().unwrap_or(value)
-}
-
-/// The smallest of 1, 2 and 5 times a power of ten that is not below a value.
-fn rounded_up(value: f64) -> f64 {
-    let below = rounded_down(value);
-    if below >= value * (1.0 - 1e-12) { below } else { rounded_down(2.6 * below) }
+    let chosen = Chosen { path: "time.step_s".into(), value: scene.time.step_s, reason };
+    Ok((chosen, simulation.into_blocks()))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn values_are_rounded_to_what_a_person_would_write() {
-        for (value, down, up) in [
-            (1.0, 1.0, 1.0),
-            (1.9e-5, 1e-5, 2e-5),
-            (2e-5, 2e-5, 2e-5),
-            (4.9e9, 2e9, 5e9),
-            (5.1e9, 5e9, 1e10),
-            (9.99e-3, 5e-3, 1e-2),
-        ] {
-            assert_eq!((rounded_down(value), rounded_up(value)), (down, up), "{value}");
-        }
-    }
 
     #[test]
     fn a_sliver_does_not_decide_on_the_size_of_blocks() {

@@ -82,14 +82,19 @@ impl Model {
     /// # Errors
     /// As [`resuming`](Self::resuming).
     pub fn resuming_with(loaded: LoadedScene, folder: &Path, choices: Choices) -> Result<Self, SceneErrors> {
-        let mut loaded = choose::complete(loaded, folder)?;
+        let (mut loaded, cut) = choose::complete_on_blocks(loaded, folder)?;
         let located = |faults: Vec<Fault>| {
             let diagnostics: Vec<Diagnostic> =
                 faults.into_iter().map(|fault| loaded.diagnose(&fault.path, fault.message)).collect();
             loaded.errors(diagnostics)
         };
-        admit::admit(&loaded, folder).map_err(|refused| loaded.errors(vec![refused]))?;
-        let (blocks, rock) = build::blocks_and_rock(&loaded.scene, folder).map_err(located)?;
+        let (blocks, rock) = match cut {
+            Some(cut) => cut,
+            None => {
+                admit::admit(&loaded, folder).map_err(|refused| loaded.errors(vec![refused]))?;
+                build::blocks_and_rock(&loaded.scene, folder).map_err(located)?
+            }
+        };
         let far = rounding::warning(&loaded, &blocks);
         build::stages::refuse(&loaded.scene, &blocks, folder).map_err(located)?;
         let simulation = build::stages::simulation_in_stage(&loaded.scene, blocks, folder, choices, 0);

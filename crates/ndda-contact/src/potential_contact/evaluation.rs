@@ -55,8 +55,10 @@ impl PotentialContact {
     /// Candidate pairs at `input.position`, and frames of their tetrahedra.
     pub(super) fn find_pairs(&mut self, input: &ContactInput) -> Result<(), ContactError> {
         let tets = input.blocks.tets.len();
-        if self.field.as_ref().is_none_or(|(known, _)| *known != tets) {
-            let field = self.potential.field(input.blocks);
+        if self.fitted_to != Some(tets) {
+            if self.field.as_ref().is_none_or(|(known, _)| *known != tets) {
+                self.fit_potential(input.blocks).map_err(|e| ContactError::Potential(e.to_string()))?;
+            }
             let surfaces = BlockFaces::of_all(input.blocks);
             // Memory per element needs the elements.
             let phi_per_m = self.potential.phi_per_m().filter(|_| !self.candidates.split_by_element);
@@ -66,7 +68,7 @@ impl PotentialContact {
             if self.rubs_faces() {
                 self.faces.fit(input.blocks, &surfaces, input.affine);
             }
-            self.field = Some((tets, field.map_err(|e| ContactError::Potential(e.to_string()))?));
+            self.fitted_to = Some(tets);
         }
         let opening_m = self.openings.most_m();
         self.candidates.make_room(opening_m);

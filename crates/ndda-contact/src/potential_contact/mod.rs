@@ -33,8 +33,10 @@ pub use {
     potential::piece_table::PieceTable,
     potential::smooth::SmoothPotential,
     potential::volume::VolumePotential,
-    restitution::RestitutionTable,
+    restitution::{Restitution, RestitutionTable},
 };
+
+use ndda_mesh::BlockSet;
 
 use crate::affine::convex_target::ConvexBlocks;
 use crate::assembly::adjacency::BlockContactIndex;
@@ -81,6 +83,8 @@ pub struct PotentialContact {
     damping: Option<Box<ContactDamping>>,
     /// φ of the blocks last seen, and how many tetrahedra they had.
     field: Option<(usize, PotentialField)>,
+    /// How many tetrahedra the blocks had for which hulls and faces are in place.
+    fitted_to: Option<usize>,
     candidates: Candidates,
     hulls: ConvexBlocks,
     integrals: Integrals,
@@ -117,6 +121,7 @@ impl PotentialContact {
             joints: None,
             damping: None,
             field: None,
+            fitted_to: None,
             candidates: Candidates::default(),
             hulls: ConvexBlocks::default(),
             integrals: Integrals::default(),
@@ -143,6 +148,15 @@ impl PotentialContact {
     pub fn with_potential(mut self, potential: Box<dyn ContactPotential>) -> Self {
         self.potential = potential;
         self
+    }
+
+    /// Finds φ of the blocks now rather than at the first step.
+    ///
+    /// # Errors
+    /// [`PotentialError`] naming the block that the potential cannot serve.
+    pub fn fit_potential(&mut self, blocks: &BlockSet) -> Result<(), PotentialError> {
+        self.field = Some((blocks.tets.len(), self.potential.field(blocks)?));
+        Ok(())
     }
 
     /// With another broad phase.

@@ -31,6 +31,10 @@ pub enum Contact {
         /// penalty and the step. Below 1, what rings comes to rest; 0 counts as 0.005. Needs `contact_at: Predicted`. Default: 1, undamped.
         #[serde(default = "one")]
         restitution: f64,
+        /// Coefficient of restitution along the face, from 0 to 1: speed that half an oscillation on a shear spring leaves, over that before, while the spring sticks. Needs
+        /// friction with `shear_penalty_pa_m`. Default: springs are damped as contact is along its normal.
+        #[serde(default)]
+        shear_restitution: Option<f64>,
         /// Friction between blocks of two materials, in place of `friction`; a later entry counts more. Default: none.
         #[serde(default)]
         material_pairs: Vec<MaterialPair>,
@@ -199,6 +203,9 @@ pub struct MaterialPair {
     /// Coefficient of restitution there. Default: that of all contacts.
     #[serde(default)]
     pub restitution: Option<f64>,
+    /// Coefficient of restitution along the face there. Default: that of all contacts, or of the normal where `restitution` is given here.
+    #[serde(default)]
+    pub shear_restitution: Option<f64>,
 }
 
 /// Friction on the faces that a named joint made.
@@ -217,6 +224,9 @@ pub struct JointLaw {
     /// Coefficient of restitution there. Default: that of the two materials.
     #[serde(default)]
     pub restitution: Option<f64>,
+    /// Coefficient of restitution along the face there; needs `restitution` beside it. Default: springs are damped as contact is along its normal.
+    #[serde(default)]
+    pub shear_restitution: Option<f64>,
 }
 
 /// The owner of friction history.

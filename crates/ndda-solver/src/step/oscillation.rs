@@ -33,6 +33,11 @@ impl Oscillation {
         past
     }
 
+    /// Kinetic energy after the last step, if it was not stopped there [J].
+    pub(super) fn energy_j(&self) -> f64 {
+        self.energy_j
+    }
+
     /// Energy that it may still have: what it has, and what its last oscillations had.
     pub(super) fn left_j(&self) -> f64 {
         match self.peak_j {

@@ -22,6 +22,11 @@ impl Simulation {
         &self.problem.blocks
     }
 
+    /// Gives back the blocks of a simulation that is not needed any more.
+    pub fn into_blocks(self) -> BlockSet {
+        self.problem.blocks
+    }
+
     /// The changing state.
     pub fn state(&self) -> &State {
         &self.state

@@ -304,6 +304,8 @@ struct Progress {
     load_j: f64,
     /// Largest kinetic energy on the way [J].
     highest_j: f64,
+    /// Kinetic energy of blocks that only rounding moves [J]: an oscillation that had no more is over.
+    rounding_j: f64,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -319,7 +321,8 @@ impl Progress {
             Damping::Local { factor } => Damper::Local(LocalDamping::new(factor)),
         };
         let load_j = simulation.blocks().ids().map(|block| simulation.load_energy_j(block)).sum();
-        Self { damper, oscillation: Oscillation::default(), moving_j: 0.0, load_j, highest_j: load_j }
+        let (oscillation, rounding_j) = (Oscillation::default(), rounding_j(simulation));
+        Self { damper, oscillation, moving_j: 0.0, load_j, highest_j: load_j, rounding_j }
     }
 
     /// A step; gives its report, and the speed that is left over the largest.
@@ -330,13 +333,16 @@ impl Progress {
         };
         let total_j = simulation.kinetic_energy_j();
         self.highest_j = self.highest_j.max(total_j);
+        let peak_j = self.oscillation.energy_j().max(total_j);
         let past_peak = self.oscillation.is_past_peak(total_j);
         match &self.damper {
             Damper::Kinetic => {
                 if past_peak {
                     simulation.state.velocity.fill(Vec3::zeros());
                 }
-                Ok((report, ratio(self.oscillation.left_j(), self.scale_j())))
+                let left_j =
+                    if past_peak && peak_j <= self.rounding_j { 0.0 } else { self.oscillation.left_j() };
+                Ok((report, ratio(left_j, self.scale_j())))
             }
             Damper::Local(damping) => {
                 // Where an oscillation turns it is slow, and its forces are farthest from balance.
@@ -351,6 +357,15 @@ impl Progress {
         let steps = self.oscillation.longest as f64;
         self.highest_j.max(steps * steps * self.moving_j)
     }
+}
+
+/// ½ Σ m (2 ε X/Δt)², X being the largest coordinate: each step rounds the place of a node, and the force that depends on it.
+fn rounding_j(simulation: &Simulation) -> f64 {
+    let bounds = Aabb::around(simulation.state.position.iter());
+    let speed_m_s = 2.0 * f64::EPSILON * bounds.min.abs().sup(&bounds.max.abs()).max() / simulation.part_s;
+    let moving = simulation.blocks().ids().map(|block| simulation.shape(block));
+    let moving = moving.filter(|shape| shape.kind != BodyKind::Fixed);
+    0.5 * speed_m_s * speed_m_s * moving.map(|shape| shape.operator.mass_kg).sum::<f64>()
 }
 
 /// Speed of an energy over that of another.

@@ -1,6 +1,6 @@
 //! Friction and restitution between pairs of materials, and on the faces of joints.
 
-use ndda_contact::{FrictionLaw, FrictionLawTable, MohrCoulomb, RestitutionTable};
+use ndda_contact::{FrictionLaw, FrictionLawTable, MohrCoulomb, Restitution, RestitutionTable};
 use ndda_io::scene::{self, Scene};
 use ndda_mesh::BlockSet;
 use ndda_mesh::geometry::{TET_FACES, tet_volume, triangle_area_vector};
@@ -31,19 +31,23 @@ pub(super) fn between_materials(
 pub(super) fn restitution_table(
     scene: &Scene,
     blocks: &BlockSet,
-    everywhere: f64,
+    everywhere: Restitution,
     (pairs, laws): (&[scene::MaterialPair], &[scene::JointLaw]),
 ) -> RestitutionTable {
     let index = |name: &str| material_index(scene, name);
     let materials = materials_of(scene, blocks);
     let mut table = RestitutionTable::between(materials, scene.materials.len(), everywhere);
     for pair in pairs {
-        if let Some(restitution) = pair.restitution {
+        if pair.restitution.is_some() || pair.shear_restitution.is_some() {
+            // One that is given here has its own dashpots, unless these are given, too.
+            let shear = pair.shear_restitution.or(everywhere.shear.filter(|_| pair.restitution.is_none()));
+            let restitution = Restitution { normal: pair.restitution.unwrap_or(everywhere.normal), shear };
             table.set((index(&pair.between.0), index(&pair.between.1)), restitution);
         }
     }
     for law in laws {
-        if let Some(restitution) = law.restitution {
+        if let Some(normal) = law.restitution {
+            let restitution = Restitution { normal, shear: law.shear_restitution };
             table.set_on(&surfaces_of(&law.joint, blocks), restitution);
         }
     }

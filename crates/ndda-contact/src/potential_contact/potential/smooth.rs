@@ -5,6 +5,7 @@ use ndda_mesh::{BlockId, BlockSet, NodeId, TetId, Vec3};
 use parry3d_f64::bounding_volume::Aabb as ParryAabb;
 use parry3d_f64::math::Vector;
 use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhNode};
+use rayon::prelude::*;
 
 use crate::affine::surface::{BlockFaces, Plane};
 use crate::potential::contact_potential::{ContactPotential, PotentialError, PotentialField};
@@ -12,6 +13,9 @@ use crate::potential::piece_table::{MOST_PIECES, PieceTable};
 
 /// Depths closer than this fraction of the block's largest are the same: by rounding, they differ with how it is turned.
 const SAME_DEPTH: f64 = 1e-11;
+
+/// Nodes per task of a thread.
+const NODES_OF_TASK: usize = 256;
 
 /// φ = depth / L₀, depth being the distance to the nearest face of the block in its rest shape; it moves and
 /// stretches with the block's nodes.
@@ -143,7 +147,7 @@ fn depth_of_nodes(blocks: &BlockSet, block: BlockId) -> Vec<f64> {
             |leaf: u32, _| Some(distance_to_triangle(x, &corners(blocks.triangles[first + leaf as usize])));
         tree.find_best(f64::MAX, to_box, to).map_or(f64::INFINITY, |(_, distance)| distance)
     };
-    let nodes = blocks.rest_position[range.clone()].iter();
+    let nodes = blocks.rest_position[range.clone()].par_iter().with_min_len(NODES_OF_TASK);
     nodes.zip(&on_surface).map(|(x, &on)| if on { 0.0 } else { distance(x) }).collect()
 }
 

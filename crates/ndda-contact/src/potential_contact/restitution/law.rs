@@ -45,6 +45,15 @@ pub(super) fn factor_of(restitution: f64) -> f64 {
     0.5 * (less + more)
 }
 
+/// c/√(m K) of a dashpot beside a spring with which half an oscillation leaves this part of the speed: 2ζ, e = exp(−π ζ/√(1 − ζ²)).
+pub(super) fn shear_factor_of(restitution: f64) -> f64 {
+    if restitution >= 1.0 {
+        return 0.0;
+    }
+    let decrement = -restitution.max(LEAST_RESTITUTION).ln();
+    2.0 * decrement / decrement.hypot(std::f64::consts::PI)
+}
+
 /// Where in a step a velocity counts by which a damper of rate λ, z = λ Δt, brakes it, so that it decays by exp(−z): ½ at the start of
 /// a short step, the end in a long one.
 pub(super) fn weight_of_end(z: f64) -> f64 {

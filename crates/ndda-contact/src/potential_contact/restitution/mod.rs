@@ -28,7 +28,7 @@ use crate::restitution::dashpot::{Dashpot, DashpotPair};
 use crate::restitution::pair::{Change, Pair, Point};
 
 pub(crate) use scene::DampingScene;
-pub use table::RestitutionTable;
+pub use table::{Restitution, RestitutionTable};
 
 /// Part of the largest force that the damping of a pair may still change by.
 const TOLERANCE: f64 = 1e-9;
@@ -144,7 +144,7 @@ impl ContactDamping {
             // Walls that ride on each other part without leaving each other.
             let rides = scene.openings.have(touch.triangle, touch.target);
             let presses = !rides && self.push_pa[t as usize] != Vec3::zeros();
-            if presses && self.table.factor(scene.input.blocks, touch.triangle, touch.target) > 0.0 {
+            if presses && self.table.factors(scene.input.blocks, touch.triangle, touch.target).damp() {
                 let pair = [touch.owner.min(touch.target), touch.owner.max(touch.target)];
                 self.order.push((pair, t));
             }
@@ -165,11 +165,12 @@ impl ContactDamping {
             let first = self.points.len();
             let mut stiffness_n_m = 0.0;
             for &(_, t) in run {
+                let touch = &scene.integrals.touching()[t as usize];
+                let factor = self.table.factors(scene.input.blocks, touch.triangle, touch.target).normal;
+                if factor == 0.0 {
+                    continue;
+                }
                 stiffness_n_m += scene.stiffness_n_m(t as usize);
-                let factor = {
-                    let touch = &scene.integrals.touching()[t as usize];
-                    self.table.factor(scene.input.blocks, touch.triangle, touch.target)
-                };
                 self.points.extend(scene.points(t, &self.push_pa[t as usize], (pair, factor)));
             }
             let range = [first as u32, self.points.len() as u32];

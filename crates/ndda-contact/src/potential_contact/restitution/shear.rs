@@ -1,7 +1,7 @@
 //! Dashpots beside the shear springs of damped contacts.
 //!
 //! A spring of stiffness K between two blocks of reduced mass m has a dashpot α √(m K): the same α as along the normal, so that blocks that swing on their
-//! springs come to rest as those that bounce. Spring and dashpot together carry no more than the friction law allows, and the work is that of friction.
+//! springs come to rest as those that bounce; a coefficient of restitution along the face sets another one. Spring and dashpot together carry no more than the friction law allows, and the work is that of friction.
 //!
 //! Where blocks deform, the dashpots on a node of mass m, or on a block that moves by an affine map, take at most c = m/2Δt: with the velocity at the start
 //! of the step, more than 2 m/Δt would be unstable. The motion of blocks as a whole is solved for (`dashpot.rs`), and has no limit.
@@ -80,8 +80,8 @@ impl ContactDamping {
                 let touch = &touching[t as usize];
                 let (hits, sums) = (scene.integrals.overlaps_of(touch), scene.integrals.sums_of(touch));
                 let stiffness_n_m = stiffness_n_m(t);
-                let rate =
-                    stiffness_n_m * self.table.factor(blocks, touch.triangle, touch.target) / rate_per_s;
+                let rate = stiffness_n_m * self.table.factors(blocks, touch.triangle, touch.target).shear
+                    / rate_per_s;
                 let corners = blocks.triangle_corners(touch.triangle, scene.input.position);
                 let x = sums.center(&corners);
                 let slip_m_s = relative_velocity(touch, (hits, sums), scene.input) / sums.pressure;

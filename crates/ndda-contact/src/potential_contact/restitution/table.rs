@@ -4,7 +4,44 @@ use std::collections::BTreeMap;
 
 use ndda_mesh::{BlockId, BlockSet, TriangleId};
 
-use crate::restitution::law::factor_of;
+use crate::restitution::law::{factor_of, shear_factor_of};
+
+/// Damping factors along the normal and along the face, each beside the root of mass and stiffness.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Factors {
+    /// α of the normal.
+    pub normal: f64,
+    /// c/√(m K) of the dashpots beside shear springs.
+    pub shear: f64,
+}
+
+/// Coefficients of restitution of a contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Restitution {
+    /// Speed at which two blocks part after a central impact, over that at which they met.
+    pub normal: f64,
+    /// Speed along the face after half an oscillation on a shear spring, over that before; none for the dashpots of the normal.
+    pub shear: Option<f64>,
+}
+
+impl From<f64> for Restitution {
+    fn from(normal: f64) -> Self {
+        Self { normal, shear: None }
+    }
+}
+
+impl Factors {
+    pub(super) fn damp(&self) -> bool {
+        self.normal > 0.0 || self.shear > 0.0
+    }
+}
+
+impl Restitution {
+    fn factors(self) -> Factors {
+        let normal = factor_of(self.normal);
+        Factors { normal, shear: self.shear.map_or(normal, shear_factor_of) }
+    }
+}
 
 /// A coefficient of restitution for each pair of materials, and others for named surfaces: joints.
 ///
@@ -15,44 +52,45 @@ pub struct RestitutionTable {
     /// Material of each block; blocks beyond the list have material 0.
     material: Vec<u32>,
     materials: usize,
-    /// Damping factor α of each pair of materials.
-    of_pair: Vec<f64>,
-    /// α by index in [`BlockSet::surface_names`].
-    on_surface: BTreeMap<u32, f64>,
+    /// Damping of each pair of materials.
+    of_pair: Vec<Factors>,
+    /// Damping by index in [`BlockSet::surface_names`].
+    on_surface: BTreeMap<u32, Factors>,
 }
 
 impl RestitutionTable {
     /// One coefficient between all blocks.
-    pub fn everywhere(restitution: f64) -> Self {
+    pub fn everywhere(restitution: impl Into<Restitution>) -> Self {
         Self::between(Vec::new(), 1, restitution)
     }
 
     /// One coefficient between blocks of so many materials (one index per block), until others are set.
-    pub fn between(material: Vec<u32>, materials: usize, restitution: f64) -> Self {
-        let of_pair = vec![factor_of(restitution); materials * materials];
+    pub fn between(material: Vec<u32>, materials: usize, restitution: impl Into<Restitution>) -> Self {
+        let of_pair = vec![restitution.into().factors(); materials * materials];
         Self { material, materials, of_pair, on_surface: BTreeMap::new() }
     }
 
     /// Sets the coefficient between two materials; the latest call counts.
-    pub fn set(&mut self, (a, b): (u32, u32), restitution: f64) {
+    pub fn set(&mut self, (a, b): (u32, u32), restitution: impl Into<Restitution>) {
+        let factors = restitution.into().factors();
         for (a, b) in [(a, b), (b, a)] {
-            self.of_pair[a as usize * self.materials + b as usize] = factor_of(restitution);
+            self.of_pair[a as usize * self.materials + b as usize] = factors;
         }
     }
 
     /// Sets the coefficient on faces of surfaces, by their index in [`BlockSet::surface_names`]; the latest call counts.
-    pub fn set_on(&mut self, surfaces: &[u32], restitution: f64) {
-        let factor = factor_of(restitution);
-        self.on_surface.extend(surfaces.iter().map(|&surface| (surface, factor)));
+    pub fn set_on(&mut self, surfaces: &[u32], restitution: impl Into<Restitution>) {
+        let factors = restitution.into().factors();
+        self.on_surface.extend(surfaces.iter().map(|&surface| (surface, factors)));
     }
 
     /// Whether any contact is damped.
     pub fn damps(&self) -> bool {
-        self.of_pair.iter().chain(self.on_surface.values()).any(|&factor| factor > 0.0)
+        self.of_pair.iter().chain(self.on_surface.values()).any(|factors| factors.damp())
     }
 
-    /// α of a facet of one block that touches another; zero without damping.
-    pub(super) fn factor(&self, blocks: &BlockSet, facet: TriangleId, target: BlockId) -> f64 {
+    /// Damping of a facet of one block that touches another.
+    pub(super) fn factors(&self, blocks: &BlockSet, facet: TriangleId, target: BlockId) -> Factors {
         let surface = blocks.triangle_surface[facet.index()];
         let own = surface.and_then(|surface| self.on_surface.get(&surface));
         own.copied().unwrap_or_else(|| {
@@ -76,5 +114,6 @@ mod tests {
         table.set((0, 0), 1.0);
         table.set_on(&[3], 0.9);
         assert!(table.damps());
+        assert!(RestitutionTable::everywhere(Restitution { normal: 1.0, shear: Some(0.5) }).damps());
     }
 }

@@ -17,17 +17,18 @@ impl Check<'_> {
                     help,
                 );
             }
-            Some(Contact::Potential {
-                penalty_pa,
-                depth_ratio,
-                potential,
-                friction,
-                material_pairs,
-                rock_joints,
-                restitution,
-                ..
-            }) => {
-                self.restitution(*restitution, material_pairs, rock_joints);
+            Some(
+                contact @ Contact::Potential {
+                    penalty_pa,
+                    depth_ratio,
+                    potential,
+                    friction,
+                    material_pairs,
+                    rock_joints,
+                    ..
+                },
+            ) => {
+                self.restitution(contact);
                 self.penalty(*penalty_pa, *depth_ratio, potential);
                 self.potential(potential);
                 if let Some(friction) = friction {

@@ -73,7 +73,7 @@ pub(super) fn chatter(simulation: &Simulation) -> Option<Entry> {
 pub(super) fn rebound(simulation: &Simulation) -> Option<Entry> {
     let worst = simulation.invariants().rebound_speed;
     let reason = format!(
-        "block `{}` may slide too fast by about {:.1} % of the largest speed, limit {:.0} %: when gravity began to act at once, its contact rebounded and the block stuck and slipped in turn; raise penalty_pa (softer contact rebounds more), or let gravity grow over a gravity_ramp_s that is long beside these rebounds",
+        "block `{}` may slide too fast by about {:.1} % of the largest speed, limit {:.0} %: where a load comes at once (gravity at the start, a record that jumps), its contact rebounds and the block sticks and slips in turn; raise penalty_pa (softer contact rebounds more), or let the load grow over a time that is long beside these rebounds (gravity_ramp_s)",
         name(simulation, worst),
         100.0 * worst.value,
         100.0 * SPEED
