@@ -132,7 +132,9 @@ impl Simulation {
             let nodes = self.problem.blocks.nodes_of(BlockId(index as u32));
             self.scratch.force[nodes.clone()].iter_mut().for_each(|force| *force /= *factor);
             if self.scratch.contact_has_acted {
-                self.scratch.friction_force[nodes.clone()].iter_mut().for_each(|force| *force /= *factor);
+                // Without contact there is no friction, and bolts act.
+                let friction = self.scratch.friction_force.get_mut(nodes.clone()).unwrap_or_default();
+                friction.iter_mut().for_each(|force| *force /= *factor);
                 self.scratch.contact_stiffness[nodes].iter_mut().for_each(|stiffness| *stiffness /= *factor);
             }
         }
