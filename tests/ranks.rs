@@ -141,9 +141,10 @@ fn potentials_friction_and_damping_of_contact() {
 
 #[test]
 fn scenes_that_settle_and_pass_through_stages() {
-    let settled =
-        heap("Elastic", "step_s: 4e-4, end_s: 0.02", SMOOTH, "settle: (tolerance: 0.3, most_steps: 2000),");
-    same_on(&[2], &settled);
+    for body in ["Elastic", "Rigid"] {
+        let settle = "settle: (tolerance: 0.3, most_steps: 2000),";
+        same_on(&[2], &heap(body, "step_s: 4e-4, end_s: 0.02", SMOOTH, settle));
+    }
     let stages = "stages: [(name: \"taken out\", remove: [\"block_8\"], then: Run(0.01))],";
     same_on(&[3], &heap("Rigid", "step_s: 4e-4, end_s: 0.02", SMOOTH, stages));
 }

@@ -3460,9 +3460,11 @@ class Settle(Builder):
     damping : SettleDampingChoice, optional
         Damping on the way to rest. Default: `Kinetic`.
     mass_scaling : bool, optional
-        Whether heavy rigid blocks have less inertia on the way to rest, so that contact makes all blocks
-        oscillate as fast as the fastest (weights stay as they are). Rest is reached in fewer steps; where
-        friction leaves several equilibria, another one may be found. Default: false.
+        Whether rigid blocks have the inertia on the way to rest with which their contacts make all of them
+        oscillate as fast as the step allows (weights stay as they are). Rest is reached in fewer steps, and
+        as many whatever the step; where friction leaves several equilibria, another one may be found.
+        Default: true, but for contact at the end of the step, for `then: Settle()` of stages and for `ndda
+        safety`, which take true masses.
 
     Examples
     --------

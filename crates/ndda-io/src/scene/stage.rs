@@ -127,7 +127,7 @@ impl Stage {
     pub fn settle(&self) -> Option<Settle> {
         match self.then {
             Then::Settle { tolerance, most_steps, damping, .. } => {
-                Some(Settle { tolerance, most_steps, damping, mass_scaling: false })
+                Some(Settle { tolerance, most_steps, damping, mass_scaling: None })
             }
             Then::Run(_) => None,
         }

@@ -41,14 +41,16 @@ pub struct Settle {
     pub most_steps: u64,
     /// Damping on the way to rest. Default: `Kinetic`.
     pub damping: SettleDamping,
-    /// Whether heavy rigid blocks have less inertia on the way to rest, so that contact makes all blocks oscillate as fast as the fastest (weights stay as they are).
-    /// Rest is reached in fewer steps; where friction leaves several equilibria, another one may be found. Default: false.
-    pub mass_scaling: bool,
+    /// Whether rigid blocks have the inertia on the way to rest with which their contacts make all of them oscillate as fast as the step allows (weights stay as they
+    /// are). Rest is reached in fewer steps, and as many whatever the step; where friction leaves several equilibria, another one may be found. Default: true, but for
+    /// contact at the end of the step, for `then: Settle()` of stages and for `ndda safety`, which take true masses.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mass_scaling: Option<bool>,
 }
 
 impl Default for Settle {
     fn default() -> Self {
-        Self { tolerance: 1e-4, most_steps: 1_000_000, damping: SettleDamping::Kinetic, mass_scaling: false }
+        Self { tolerance: 1e-4, most_steps: 1_000_000, damping: SettleDamping::Kinetic, mass_scaling: None }
     }
 }
 

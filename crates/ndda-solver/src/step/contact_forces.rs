@@ -93,9 +93,10 @@ impl Simulation {
             }
             body.inverse_inertia =
                 shape.rigid_inverse_inertia(position, &motion).unwrap_or(motion.inverse_inertia);
-            if let Some(factor) = self.scratch.inertia_factor.get(index) {
+            if let Some(masses) = &self.scratch.scaled_masses {
+                let factor = masses.factor_of(index);
                 body.mass_kg = factor * shape.operator.mass_kg;
-                body.inverse_inertia /= *factor;
+                body.inverse_inertia /= factor;
             }
             (body.load_n, body.torque_n_m) = (Vec3::zeros(), Vec3::zeros());
             for (x, load) in position.iter().zip(&self.loads.total()[range]) {

@@ -34,7 +34,8 @@ impl Simulation {
         found.map(|_| self.problem.blocks.ids().map(|block| self.contact_rate2(block)).collect())
     }
 
-    fn contact_rate2(&self, block: BlockId) -> f64 {
+    /// Upper bound of ω_c² of a block by the contacts of the last evaluation [1/s²]; 0 for fixed ones.
+    pub(super) fn contact_rate2(&self, block: BlockId) -> f64 {
         let shape = self.shape(block);
         if shape.kind == BodyKind::Fixed {
             return 0.0;

@@ -73,7 +73,7 @@ impl StepState {
 
 /// Memory of the control.
 pub(crate) struct Control {
-    settings: AutoStep,
+    pub(super) settings: AutoStep,
     solver: Box<dyn LinearSolver>,
     state: State,
     ledger: Ledger,

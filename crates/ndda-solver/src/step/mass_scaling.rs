@@ -1,63 +1,147 @@
 //! Mass scaling on the way to rest.
 //!
 //! The block that contact makes oscillate fastest limits the step; the slowest oscillation of the whole scene determines the number of steps to rest. Equilibrium
-//! does not depend on inertia, weights being loads. With mass scaling, each rigid block has so much less inertia than its own that contact
-//! could make it oscillate as fast as the fastest: the step remains stable, and fewer steps lead to rest (Underwood 1983, "Dynamic
-//! relaxation"). Where friction leaves several equilibria, another one may be found.
+//! does not depend on inertia, weights being loads. With mass scaling, each free rigid block has the inertia with which its contacts make it oscillate
+//! as fast as the step allows (Underwood 1983, "Dynamic relaxation"): h = ω_c Δt is nine tenths of its bound for every block, whatever the step, and steps to rest no longer
+//! depend on it. Where friction leaves several equilibria, another one may be found.
+//!
+//! ω_c is that of the contacts of the step (`Prototype::contact_rate2`), since a block that rocks on an edge, or hangs on one face, is held less than one that is enclosed. A
+//! block that gains contacts has more inertia in the same step; one that loses them has less by a twentieth per step, and at least a twentieth of what
+//! contact all around it would ask for. Its kinetic energy is the same before and after.
 //!
 //! A block held all around by contact of stiffness k per area has K = k ∫ g gᵀ dA with g = (n, r × n) and the inertia M = diag(m I, J), so
-//! ω² = k λ with λ the largest eigenvalue of M⁻¹ K/k. Its inertia is multiplied by λ/λ_max.
+//! ω² = k λ with λ the largest eigenvalue of M⁻¹ K/k. k is the largest ω_c²/λ that any block has had.
 
 use nalgebra::{Matrix6, Vector6};
 use ndda_mesh::{BlockId, Vec3};
+use serde::{Deserialize, Serialize};
 
 use crate::bodies::kind::BodyKind;
 use crate::step::Simulation;
-use crate::step::settle::Settle;
 
-impl Simulation {
-    /// Scales the inertia of all rigid blocks if that is asked for; the smallest factor.
-    pub(super) fn scale_masses_if(&mut self, settle: &Settle) -> Option<f64> {
-        if !settle.mass_scaling || self.newton.is_some() {
-            return None;
-        }
-        let rates: Vec<f64> = self.blocks().ids().map(|block| self.clamped_rate2(block)).collect();
-        let fastest = rates.iter().copied().fold(0.0, f64::max);
-        let factor = |rate: &f64| if *rate > 0.0 { rate / fastest } else { 1.0 };
-        self.scratch.inertia_factor = rates.iter().map(factor).collect();
-        Some(self.scratch.inertia_factor.iter().copied().fold(1.0, f64::min))
+/// Part of the largest stable h that blocks are brought to.
+const OF_BOUND: f64 = 0.9;
+/// The same where steps are controlled, over the part of the bound that they may use.
+const OF_CONTROLLED: f64 = 0.9;
+/// Least inertia of a block over what contact all around it would ask for.
+const LEAST: f64 = 0.05;
+/// Inertia after a step over that before it, at least.
+const KEPT: f64 = 0.95;
+/// Depth over height to which blocks are swollen to see which touch before the first step.
+const DEPTH: f64 = 1e-3;
+
+/// Inertia of blocks on the way to rest.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct ScaledMasses {
+    /// Factors on the inertia of all blocks.
+    factor: Vec<f64>,
+    /// Factor that a unit of ω_c² asks for: Δt² over the square of the h that blocks are brought to [s²].
+    scale_s2: f64,
+    /// Largest ω_c²/λ so far [Pa/m].
+    stiffness_pa_m: f64,
+    /// λ of rigid blocks that are free to move [m²/kg]; 0 for others.
+    clamped_rate2: Vec<f64>,
+}
+
+impl ScaledMasses {
+    /// Factor on the inertia of a block.
+    pub(super) fn factor_of(&self, block: usize) -> f64 {
+        self.factor[block]
     }
 
-    /// Gives all blocks their own inertia again.
-    pub(super) fn unscale_masses(&mut self) {
-        if self.scratch.inertia_factor.is_empty() {
+    /// The smallest and the largest factor of blocks that have one.
+    pub(super) fn range(&self) -> [f64; 2] {
+        let scaled = self.factor.iter().zip(&self.clamped_rate2).filter(|(_, rate2)| **rate2 > 0.0);
+        scaled
+            .fold([f64::INFINITY, 0.0], |[least, most], (factor, _)| [least.min(*factor), most.max(*factor)])
+    }
+
+    /// Takes ω_c² of all blocks [1/s²]; tells old over new inertia of each block, which is at most 1/`kept`.
+    fn follow(&mut self, rates2: &[f64], kept: f64, changed: &mut dyn FnMut(usize, f64)) {
+        let pairs = || rates2.iter().zip(&self.clamped_rate2).filter(|(_, clamped)| **clamped > 0.0);
+        let stiffest = pairs().map(|(rate2, clamped)| rate2 / clamped).fold(self.stiffness_pa_m, f64::max);
+        if !(stiffest > 0.0 && stiffest.is_finite()) {
             return;
         }
-        self.scratch.inertia_factor.clear();
+        self.stiffness_pa_m = stiffest;
+        let blocks = self.factor.iter_mut().zip(rates2).zip(&self.clamped_rate2).enumerate();
+        for (block, ((factor, rate2), clamped)) in blocks.filter(|(_, (_, clamped))| **clamped > 0.0) {
+            let asked = self.scale_s2 * rate2.max(LEAST * stiffest * clamped);
+            let new = asked.max(kept * *factor);
+            changed(block, *factor / new);
+            *factor = new;
+        }
+    }
+}
+
+impl Simulation {
+    /// The inertia with which a scene begins to settle: that for the contacts of blocks that touch or, where none touch, that with which contact all around would make all
+    /// as fast as the fastest. None where contact is solved for, or no rigid block is free.
+    pub(super) fn masses_to_settle_with(&mut self) -> Option<Box<ScaledMasses>> {
+        let scale_s2 = self.scale_of_rates_s2()?;
+        let clamped_rate2: Vec<f64> = self.blocks().ids().map(|block| self.clamped_rate2(block)).collect();
+        let fastest = clamped_rate2.iter().copied().fold(0.0, f64::max);
+        if fastest == 0.0 {
+            return None;
+        }
+        let factor =
+            clamped_rate2.iter().map(|rate| if *rate > 0.0 { rate / fastest } else { 1.0 }).collect();
+        let mut masses = ScaledMasses { factor, scale_s2, stiffness_pa_m: 0.0, clamped_rate2 };
+        // Contact that cannot be computed stops the first step with its own cause.
+        if let Ok(rates2) = self.contact_rates2(DEPTH) {
+            masses.follow(&rates2, 0.0, &mut |_, _| {});
+        }
+        Some(Box::new(masses))
+    }
+
+    /// Δt² over the square of the h that blocks are brought to; none where contact is solved for.
+    fn scale_of_rates_s2(&self) -> Option<f64> {
+        let of_bound =
+            self.control.as_ref().map_or(OF_BOUND, |control| OF_CONTROLLED * control.settings.safety);
+        let h = of_bound.min(OF_BOUND) * self.resolved_h()?;
+        Some((self.problem.base_step_s / h).powi(2))
+    }
+
+    /// Gives all blocks their own inertia again; what it was.
+    pub(super) fn unscale_masses(&mut self) -> Option<Box<ScaledMasses>> {
+        let masses = self.scratch.scaled_masses.take()?;
         let shapes = self.bodies.iter().map(|body| &self.problem.shapes[body.shape]);
         for (body, shape) in self.scratch.contact_bodies.iter_mut().zip(shapes) {
             body.mass_kg = shape.contact_body().mass_kg;
         }
+        Some(masses)
     }
 
     /// Factor on the inertia of a block.
     pub(super) fn inertia_factor(&self, block: BlockId) -> f64 {
-        self.scratch.inertia_factor.get(block.index()).copied().unwrap_or(1.0)
+        self.scratch.scaled_masses.as_ref().map_or(1.0, |masses| masses.factor[block.index()])
     }
 
-    /// Divides forces by the factors on inertia: with its own inertia, a block then moves as it would with the other.
+    /// Brings inertia to the contacts of the step and divides forces by the factors on it: with its own inertia, a block then moves as it would with the other.
     pub(super) fn scale_forces(&mut self) {
-        for (index, factor) in self.scratch.inertia_factor.iter().enumerate() {
+        let Some(mut masses) = self.scratch.scaled_masses.take() else { return };
+        if self.scratch.contact_has_acted {
+            let rates2: Vec<f64> = self.blocks().ids().map(|block| self.contact_rate2(block)).collect();
+            let (blocks, velocity) = (&self.problem.blocks, &mut self.state.velocity);
+            masses.follow(&rates2, KEPT, &mut |block, old_over_new| {
+                let nodes = blocks.nodes_of(BlockId(block as u32));
+                velocity[nodes].iter_mut().for_each(|v| *v *= old_over_new.sqrt());
+            });
+        }
+        for (index, factor) in masses.factor.iter().enumerate() {
             let nodes = self.problem.blocks.nodes_of(BlockId(index as u32));
             self.scratch.force[nodes.clone()].iter_mut().for_each(|force| *force /= *factor);
             if self.scratch.contact_has_acted {
-                self.scratch.friction_force[nodes.clone()].iter_mut().for_each(|force| *force /= *factor);
+                // Without contact there is no friction, and bolts act.
+                let friction = self.scratch.friction_force.get_mut(nodes.clone()).unwrap_or_default();
+                friction.iter_mut().for_each(|force| *force /= *factor);
                 self.scratch.contact_stiffness[nodes].iter_mut().for_each(|stiffness| *stiffness /= *factor);
             }
         }
+        self.scratch.scaled_masses = Some(masses);
     }
 
-    /// λ of a rigid block that is free to move [m²/kg]; 0 for others. It is that of its rest shape, so that settling goes on from a checkpoint with the same bits.
+    /// λ of a rigid block that is free to move [m²/kg]; 0 for others, by its rest shape.
     fn clamped_rate2(&self, block: BlockId) -> f64 {
         let shape = self.shape(block);
         if shape.kind != BodyKind::Rigid || !shape.is_free() {

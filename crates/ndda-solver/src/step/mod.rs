@@ -61,6 +61,7 @@ use crate::step::control::Control;
 use crate::step::follower::Places;
 use crate::step::implicit_contact::Newton;
 use crate::step::loads::Loads;
+use crate::step::mass_scaling::ScaledMasses;
 use crate::step::ranks::Ranks;
 use crate::step::settling_step::SettlingStep;
 use crate::step::stage_state::StageState;
@@ -157,8 +158,8 @@ pub(crate) struct Scratch {
     /// Scratch for positions with contact offsets.
     pub(crate) seen_position: Vec<Vec3>,
     pub(crate) contact_bodies: Vec<ContactBody>,
-    /// Factors on the inertia of blocks while a scene settles with mass scaling; empty otherwise.
-    pub(crate) inertia_factor: Vec<f64>,
+    /// Inertia of blocks while a scene settles with mass scaling; none otherwise.
+    pub(crate) scaled_masses: Option<Box<ScaledMasses>>,
     /// Node positions before the step, overwritten in the same step by its displacements [m]; empty without contact.
     pub(crate) moved: Vec<Vec3>,
 }

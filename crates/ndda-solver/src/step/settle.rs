@@ -16,6 +16,7 @@ use crate::bodies::kind::BodyKind;
 use crate::error::StepError;
 use crate::step::Simulation;
 use crate::step::local_damping::LocalDamping;
+use crate::step::mass_scaling::ScaledMasses;
 use crate::step::oscillation::Oscillation;
 use crate::step::report::StepReport;
 use crate::step::settling_step::{Ramp, SettlingStep};
@@ -44,8 +45,8 @@ pub struct Settle {
     pub most_steps: u64,
     /// Damping on the way to rest.
     pub damping: Damping,
-    /// Whether rigid blocks have so much less inertia on the way that contact makes all of them oscillate equally fast. Contact at the end of the step and
-    /// rest in the course of a run take no notice of it.
+    /// Whether free rigid blocks have the inertia on the way with which contact makes all of them oscillate as fast as the step allows. Contact at the end of the step
+    /// and rest in the course of a run take no notice of it.
     pub mass_scaling: bool,
 }
 
@@ -63,8 +64,8 @@ pub struct Settled {
     pub steps: u64,
     /// Speed left over the largest speed on the way.
     pub speed_ratio: f64,
-    /// Smallest factor on the inertia of a block; none without mass scaling.
-    pub least_inertia: Option<f64>,
+    /// The smallest and the largest factor on the inertia of rigid blocks in the last step; none without mass scaling.
+    pub inertia_factors: Option<[f64; 2]>,
 }
 
 /// A scene on its way to rest: all that settling keeps between two steps, besides the state of the simulation.
@@ -76,14 +77,23 @@ pub struct Settling {
     /// Velocities with which time begins.
     start: Vec<Vec3>,
     progress: Progress,
+    /// Inertia of blocks; none without mass scaling.
+    masses: Option<Box<ScaledMasses>>,
     /// Least speed over the largest so far, and the step of that.
     least: (f64, u64),
 }
 
 impl Settling {
     fn new(simulation: &Simulation, progress: Progress, start: Vec<Vec3>) -> Self {
-        let settled = Settled { steps: 0, speed_ratio: f64::INFINITY, least_inertia: None };
-        Self { settled, from: simulation.state.position.clone(), start, progress, least: (f64::INFINITY, 0) }
+        let settled = Settled { steps: 0, speed_ratio: f64::INFINITY, inertia_factors: None };
+        Self {
+            settled,
+            from: simulation.state.position.clone(),
+            start,
+            progress,
+            masses: None,
+            least: (f64::INFINITY, 0),
+        }
     }
 
     /// Takes the speed that is left; how many steps it has not become less for, once these are many.
@@ -148,10 +158,9 @@ impl Simulation {
     pub fn begin_to_settle(&mut self, settle: &Settle) -> Settling {
         let nodes = self.state.velocity.len();
         let start = std::mem::replace(&mut self.state.velocity, vec![Vec3::zeros(); nodes]);
-        let least_inertia = self.scale_masses_if(settle);
+        self.scratch.scaled_masses = if settle.mass_scaling { self.masses_to_settle_with() } else { None };
         let mut settling = Settling::new(self, Progress::new(self, settle.damping), start);
-        self.unscale_masses();
-        settling.settled.least_inertia = least_inertia;
+        settling.masses = self.unscale_masses();
         settling
     }
 
@@ -166,9 +175,9 @@ impl Simulation {
         settling: &mut Settling,
         watch: &mut dyn FnMut(&Settled) -> ControlFlow<()>,
     ) -> Result<bool, StepError> {
-        self.scale_masses_if(settle);
+        self.scratch.scaled_masses = settling.masses.take();
         let rests = self.come_to_rest((settle, settling), &Ramp::default(), watch);
-        self.unscale_masses();
+        settling.masses = self.unscale_masses();
         if rests?.is_none() {
             return Ok(false);
         }
@@ -200,6 +209,8 @@ impl Simulation {
             self.settling = Some(SettlingStep::new(ramp.at_s(steps), speed_ratio.max(settle.tolerance)));
             (report, settling.settled.speed_ratio) = settling.progress.step(self)?;
             settling.settled.steps += 1;
+            settling.settled.inertia_factors =
+                self.scratch.scaled_masses.as_ref().map(|masses| masses.range());
             if watch(&settling.settled).is_break() {
                 return Ok(None);
             }

@@ -3,7 +3,7 @@
 use ndda_io::scene;
 use ndda_solver::{Damping, Settle};
 
-/// The scene's choice.
+/// The scene's choice; with scaled masses where it leaves that open.
 pub(crate) fn settle(settle: scene::Settle) -> Settle {
     let damping = match settle.damping {
         scene::SettleDamping::Kinetic => Damping::Kinetic,
@@ -13,6 +13,6 @@ pub(crate) fn settle(settle: scene::Settle) -> Settle {
         tolerance: settle.tolerance,
         most_steps: settle.most_steps,
         damping,
-        mass_scaling: settle.mass_scaling,
+        mass_scaling: settle.mass_scaling.unwrap_or(true),
     }
 }

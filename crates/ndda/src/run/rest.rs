@@ -33,13 +33,13 @@ impl fmt::Display for Resting<'_> {
         if let Some(stage) = self.stage {
             write!(f, "stage `{stage}` ")?;
         }
-        let (Settled { steps, speed_ratio: left, least_inertia }, until) = (self.settled, self.tolerance);
+        let (Settled { steps, speed_ratio: left, inertia_factors }, until) = (self.settled, self.tolerance);
         match left {
             _ if left <= until => {
                 write!(f, "settled in {steps} steps")?;
-                return match least_inertia {
-                    Some(factor) => {
-                        write!(f, ", inertia of rigid blocks scaled by factors of {factor:.2e} to 1")
+                return match inertia_factors {
+                    Some([least, most]) => {
+                        write!(f, ", inertia of rigid blocks scaled by factors of {least:.1e} to {most:.1e}")
                     }
                     None => Ok(()),
                 };

@@ -100,7 +100,9 @@ fn found(loaded: &LoadedScene, folder: &Path, watch: &Watch) -> Result<(Start, f
             return Err(SafetyError::NothingFree);
         }
         let begun = simulation.state().position.clone();
-        let settle = Settle { most_steps, ..crate::build::settle(settle) };
+        // How blocks accelerate that do not come to rest is judged, with their own masses.
+        let mass_scaling = settle.mass_scaling == Some(true);
+        let settle = Settle { most_steps, mass_scaling, ..crate::build::settle(settle) };
         let mut slide = (!is_last).then(|| Slide::new(most_steps));
         match rest(&mut simulation, &settle, watch, &mut slide) {
             Ok(Rest::Slides) => {}

@@ -38,7 +38,7 @@ impl Check<'_> {
                 let message = format!("{factor}: must be above 0 and at most 1");
                 self.error("settle.damping.factor", message, "0.8 is usual");
             }
-            if settle.mass_scaling && matches!(scene.time.contact_at, ContactAt::End { .. }) {
+            if settle.mass_scaling == Some(true) && matches!(scene.time.contact_at, ContactAt::End { .. }) {
                 let help = "leave out `mass_scaling`, or write `contact_at: Predicted`";
                 self.misfit("settle.mass_scaling", "contact at the end of the step needs true masses", help);
             }
