@@ -30,6 +30,7 @@ pub(crate) mod release;
 pub(crate) mod report;
 pub(crate) mod sample;
 pub(crate) mod settle;
+pub(crate) mod settling_progress;
 pub(crate) mod settling_step;
 pub(crate) mod setup;
 pub(crate) mod slow_speed;

@@ -1,0 +1,129 @@
+//! How a scene comes to rest, step by step: what damps it, and what is left of its motion.
+
+use ndda_mesh::Vec3;
+use ndda_mesh::geometry::Aabb;
+use serde::{Deserialize, Serialize};
+
+use crate::bodies::kind::BodyKind;
+use crate::error::StepError;
+use crate::step::Simulation;
+use crate::step::local_damping::LocalDamping;
+use crate::step::oscillation::Oscillation;
+use crate::step::report::StepReport;
+
+/// Damping on the way to rest.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Damping {
+    /// All blocks are stopped whenever the kinetic energy of the scene begins to fall.
+    #[default]
+    Kinetic,
+    /// Each block loses this part of what a step has changed its velocity by.
+    Local {
+        /// α, between 0 and 1.
+        factor: f64,
+    },
+}
+
+/// How a scene comes to rest, step by step.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Progress {
+    damper: Damper,
+    pub(super) oscillation: Oscillation,
+    /// Part of `load_j` of the blocks that can move, in the course of a run; zero before it begins [J]. A scene in equilibrium hardly moves,
+    /// so its speed is compared with the one that loads alone would bring in a quarter of the slowest oscillation: about the largest speed
+    /// of the same scene released without stress, whatever the step.
+    pub(super) moving_j: f64,
+    /// Kinetic energy that loads alone would give free blocks in a step [J].
+    load_j: f64,
+    /// Largest kinetic energy on the way [J].
+    highest_j: f64,
+    /// Kinetic energy of blocks that only rounding moves [J]: an oscillation that had no more is over.
+    rounding_j: f64,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+enum Damper {
+    Kinetic,
+    Local(LocalDamping),
+}
+
+impl Progress {
+    pub(super) fn new(simulation: &Simulation, damping: Damping) -> Self {
+        let damper = match damping {
+            Damping::Kinetic => Damper::Kinetic,
+            Damping::Local { factor } => Damper::Local(LocalDamping::new(factor)),
+        };
+        let load_j = simulation.blocks().ids().map(|block| simulation.load_energy_j(block)).sum();
+        let (oscillation, rounding_j) = (Oscillation::default(), rounding_j(simulation));
+        Self { damper, oscillation, moving_j: 0.0, load_j, highest_j: load_j, rounding_j }
+    }
+
+    /// A step; gives its report, and the speed that is left over the largest.
+    pub(super) fn step(&mut self, simulation: &mut Simulation) -> Result<(StepReport, f64), StepError> {
+        let report = match &mut self.damper {
+            Damper::Kinetic => simulation.step()?,
+            Damper::Local(damping) => simulation.step_with_local_damping(damping)?,
+        };
+        let total_j = simulation.kinetic_energy_j();
+        self.highest_j = self.highest_j.max(total_j);
+        let peak_j = self.oscillation.energy_j().max(total_j);
+        let past_peak = self.oscillation.is_past_peak(total_j);
+        match &self.damper {
+            Damper::Kinetic => {
+                if past_peak {
+                    simulation.state.velocity.fill(Vec3::zeros());
+                }
+                let left_j =
+                    if past_peak && peak_j <= self.rounding_j { 0.0 } else { self.oscillation.left_j() };
+                Ok((report, ratio(left_j, self.scale_j())))
+            }
+            Damper::Local(damping) => {
+                // Where an oscillation turns it is slow, and its forces are farthest from balance.
+                let unbalanced = ratio(damping.change_j(), self.load_j);
+                Ok((report, ratio(total_j, self.scale_j()).max(unbalanced)))
+            }
+        }
+    }
+
+    /// Energy that what is left is compared with [J].
+    fn scale_j(&self) -> f64 {
+        let steps = self.oscillation.longest as f64;
+        self.highest_j.max(steps * steps * self.moving_j)
+    }
+}
+
+/// ½ Σ m (2 ε X/Δt)², X being the largest coordinate: each step rounds the place of a node, and the force that depends on it.
+fn rounding_j(simulation: &Simulation) -> f64 {
+    let bounds = Aabb::around(simulation.state.position.iter());
+    let speed_m_s = 2.0 * f64::EPSILON * bounds.min.abs().sup(&bounds.max.abs()).max() / simulation.part_s;
+    let moving = simulation.blocks().ids().map(|block| simulation.shape(block));
+    let moving = moving.filter(|shape| shape.kind != BodyKind::Fixed);
+    0.5 * speed_m_s * speed_m_s * moving.map(|shape| shape.operator.mass_kg).sum::<f64>()
+}
+
+/// Speed of an energy over that of another.
+fn ratio(energy_j: f64, largest_j: f64) -> f64 {
+    if largest_j > 0.0 { (energy_j / largest_j).sqrt() } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_left_of_an_oscillation_over_its_scale_does_not_depend_on_the_step() {
+        // A mass of 1 kg under 1 N begins at 1e-3 of the speed that 1 N brings in a quarter of its period of 1 s, and is not stopped.
+        let left = |step_s: f64| {
+            let mut oscillation = Oscillation::default();
+            let speed_m_s = |t: f64| 0.25e-3 * (std::f64::consts::TAU * t).sin();
+            for k in 1..=(0.4 / step_s).round() as u64 {
+                oscillation.is_past_peak(0.5 * speed_m_s(k as f64 * step_s).powi(2));
+            }
+            let (steps, load_j) = (oscillation.longest as f64, 0.5 * step_s * step_s);
+            ratio(0.5 * 0.25e-3f64.powi(2), steps * steps * load_j)
+        };
+        for step_s in [1e-2, 1e-3, 1e-4, 1e-5] {
+            assert!((left(step_s) / 1e-3 - 1.0).abs() < 0.06, "{step_s}: {}", left(step_s));
+        }
+    }
+}
