@@ -232,7 +232,13 @@ impl Cells<'_> {
     /// U of two blocks: every pair of their cells whose boxes touch.
     fn overlap_of(&self, a: BlockId, b: BlockId, room: &mut [Polyhedron; 2]) -> f64 {
         let block_box = |block| Aabb::around(&self.input.position[self.input.blocks.nodes_of(block)]);
-        let (box_a, box_b) = (block_box(a), block_box(b));
+        let (mut a, mut b, mut box_a, mut box_b) = (a, b, block_box(a), block_box(b));
+        // Their roles differ, so that the sum would round otherwise if the scene listed them the other way round: places tell them apart.
+        let place = |bounds: &Aabb| [bounds.min, bounds.max].map(|corner| [corner.x, corner.y, corner.z]);
+        if place(&box_b) < place(&box_a) {
+            std::mem::swap(&mut a, &mut b);
+            std::mem::swap(&mut box_a, &mut box_b);
+        }
         // Near the overlap, so that map coordinates lose no digits.
         let origin = box_a.min.sup(&box_b.min);
         let (of_a, of_b) =
