@@ -14,6 +14,7 @@ mod motion;
 mod random;
 mod ranks;
 mod renumbered;
+mod reordered;
 mod resumed;
 mod rotated;
 mod rows;

@@ -155,6 +155,88 @@ fn a_scheduler_gets_commands_that_run_one_case_each() {
 }
 
 #[test]
+fn what_ran_on_several_threads_is_gathered() {
+    let folder = folder(RUNS);
+    let done = ndda(folder.path(), &["study", "study.ron", "--threads", "2"]);
+    assert_eq!(done.status.code(), Some(0), "{}", said(&done));
+    let collect = |threads| ndda(folder.path(), &["study", "collect", "study.ron", "--threads", threads]);
+    assert_eq!(collect("2").status.code(), Some(0), "{}", said(&collect("2")));
+    // Their times are not those of one thread.
+    assert_ne!(collect("1").status.code(), Some(0));
+}
+
+/// A program in the place of `srun`, which keeps the words it is started with and runs the scene by `ndda`.
+#[cfg(unix)]
+fn stand_in_for_srun(folder: &Path) -> std::ffi::OsString {
+    use std::os::unix::fs::PermissionsExt;
+    let programs = folder.join("programs");
+    fs::create_dir(&programs).unwrap();
+    let run = "while [ \"$1\" != run ]; do shift; done";
+    let script =
+        format!("#!/bin/sh\necho \"$@\" >> srun.log\n{run}\nexec {} \"$@\"\n", env!("CARGO_BIN_EXE_ndda"));
+    fs::write(programs.join("srun"), script).unwrap();
+    fs::set_permissions(programs.join("srun"), fs::Permissions::from_mode(0o755)).unwrap();
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    std::env::join_paths(std::iter::once(programs).chain(std::env::split_paths(&path))).unwrap()
+}
+
+#[cfg(unix)]
+#[test]
+fn an_array_of_slurm_runs_each_case_by_ranks_and_is_gathered() {
+    let folder = folder(RUNS);
+    let ranks = ["--threads", "2", "--ranks", "3"];
+    let with_ranks = |words: &[&str]| ndda(folder.path(), &[words, &ranks[..]].concat());
+    let emitted = with_ranks(&["study", "study.ron", "--emit", "slurm"]);
+    let script = String::from_utf8(emitted.stdout).unwrap();
+    assert!(
+        script.contains("#SBATCH --array=0-3%1\n") && script.contains("#SBATCH --ntasks=3\n"),
+        "{script}"
+    );
+    // As Slurm would run it, once for each task.
+    let script = script.replace("exec ndda", &format!("exec {}", env!("CARGO_BIN_EXE_ndda")));
+    fs::write(folder.path().join("job.sh"), script).unwrap();
+    let path = stand_in_for_srun(folder.path());
+    for task in 0..4 {
+        let mut shell = Command::new("sh");
+        shell.arg("job.sh").current_dir(folder.path()).env("PATH", &path).env("SLURM_JOB_ID", "1");
+        let done = shell.env("SLURM_ARRAY_TASK_ID", task.to_string()).output().unwrap();
+        assert_eq!(done.status.code(), Some(0), "{}", said(&done));
+    }
+    let log = fs::read_to_string(folder.path().join("srun.log")).unwrap();
+    assert_eq!(log.lines().count(), 4, "{log}");
+    let is_right = |line: &str| {
+        line.starts_with("--ntasks=3 --cpus-per-task=2 --cpu-bind=cores ")
+            && line.contains("ndda-mpi run ")
+            && line.contains(" --force --quiet --sensitivity never --threads 2 --set ")
+    };
+    assert!(log.lines().all(is_right), "{log}");
+    let gathered = with_ranks(&["study", "collect", "study.ron"]);
+    assert_eq!(gathered.status.code(), Some(0), "{}", said(&gathered));
+    // Their times are not those of one process.
+    let alone = ndda(folder.path(), &["study", "collect", "study.ron", "--threads", "2"]);
+    assert_ne!(alone.status.code(), Some(0));
+    for wrong in ["0", "-1", "2.5", "5000", "two"] {
+        let refused = ndda(folder.path(), &["study", "study.ron", "--emit", "slurm", "--ranks", wrong]);
+        assert_eq!(refused.status.code(), Some(2), "{wrong}: {}", said(&refused));
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn processor_times_of_ranks_are_refused_and_a_starter_that_is_not_there_is_named() {
+    let run = |study: &str| {
+        let folder = folder(study);
+        let mut command = Command::new(env!("CARGO_BIN_EXE_ndda"));
+        command.args(["study", "study.ron", "--ranks", "2"]).current_dir(folder.path()).env("PATH", "");
+        let done = command.env_remove("SLURM_JOB_ID").output().unwrap();
+        assert_ne!(done.status.code(), Some(0));
+        said(&done)
+    };
+    assert!(run(PROCESSOR).contains("leave out `clock: Processor`, or --ranks"), "{}", run(PROCESSOR));
+    assert!(run(RUNS).contains("cannot start a run: mpirun: "), "{}", run(RUNS));
+}
+
+#[test]
 fn values_of_the_base_scene_are_set_before_those_of_the_study() {
     let folder = folder(RUNS);
     let set = ["study", "study.ron", "--set", "time.end_s=0.2", "--set", "time.step_s=1"];

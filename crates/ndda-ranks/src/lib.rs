@@ -2,7 +2,7 @@
 //!
 //! Every rank has the whole scene and the same state. The costly loops of a step are divided among them ([`divide`]); each rank packs what it
 //! has found ([`Packer`]), hands it to all others ([`Communicator::exchange`]) and unpacks what they found ([`Unpacker`]). Numbers travel as they
-//! are, and every sum is taken afterwards in the order in which one process takes it: results have the same bits on any number of ranks.
+//! are, and every sum is taken afterwards in the order in which one process takes it: results have the same bits on any number of ranks. Sums over blocks do not depend on their order ([`ExactSum`]).
 //!
 //! ```
 //! use ndda_ranks::{Communicator, Gathered, Threads, Topic};
@@ -22,12 +22,14 @@
 
 mod communicator;
 mod divide;
+mod exact_sum;
 mod packing;
 mod threads;
 mod until_ended;
 
 pub use communicator::{Alone, Communicator, Gathered, RanksError, Topic, agree};
 pub use divide::{divide, share};
+pub use exact_sum::ExactSum;
 pub use packing::{Packed, Packer, Unpacker};
 pub use threads::Threads;
 pub use until_ended::UntilEnded;

@@ -10,6 +10,7 @@ mod judge;
 pub mod launch;
 #[cfg(feature = "plots")]
 mod pictures;
+pub mod ranks;
 pub mod record;
 pub mod result;
 pub mod runner;

@@ -119,6 +119,9 @@ pub struct StudyHow {
     /// Threads of each run.
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: u16,
+    /// Run each case by so many ranks of ndda-mpi with --threads each: by srun in a job of Slurm, else by mpirun.
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
+    pub ranks: u16,
     /// Print nothing but errors and results.
     #[arg(long, short)]
     pub quiet: bool,

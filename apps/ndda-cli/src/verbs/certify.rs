@@ -24,7 +24,7 @@ pub fn certify(args: &CertifyArgs) -> u8 {
 }
 
 fn certify_trial(args: &CertifyArgs, trial: &Trial) -> Result<u8, CertifyError> {
-    let runner = Processes { stop: interrupt::watch() };
+    let runner = Processes { stop: interrupt::watch(), ranks: 1 };
     let tell = complain_unless(args.how.quiet);
     let launch = trial.launch(&runner, &tell, (args.how.jobs, args.how.threads));
     let wanted = Wanted { meshes: args.mesh, penalties: args.penalty, of: args.of.clone() };

@@ -1,12 +1,11 @@
 //! Cases of a study as processes of their own, so that memory is measured per case and a crash ends one run, not all.
 
 use std::ffi::OsString;
-use std::process::{Command, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
 
-use ndda::forecast::memory;
 use ndda::study::error::StudyError;
+use ndda::study::ranks;
 use ndda::study::record::Cause;
 use ndda::study::runner::{CaseRun, CaseRunner};
 
@@ -20,24 +19,22 @@ pub static PROGRAM: OnceLock<Vec<OsString>> = OnceLock::new();
 pub struct Processes {
     /// Raised when somebody asks the study to end.
     pub stop: Arc<AtomicBool>,
+    /// Ranks that take a case together.
+    pub ranks: u16,
 }
 
 impl CaseRunner for Processes {
+    fn ranks(&self) -> u16 {
+        self.ranks
+    }
+
     fn run(&self, run: &CaseRun) -> Result<Option<(Cause, String)>, StudyError> {
         if self.stop.load(Ordering::Relaxed) {
             return Err(StudyError::Interrupted);
         }
         let program = PROGRAM.get().map_or(&[][..], Vec::as_slice);
-        let mut command = Command::new(program.first().map_or("ndda".as_ref(), OsString::as_os_str));
-        command.args(program.iter().skip(1)).arg("run").arg(run.scene).arg("--out").arg(run.out);
-        command.args(["--force", "--quiet", "--sensitivity", "never", "--threads", &run.threads.to_string()]);
-        if let Some(bytes) = memory::asked() {
-            command.args(["--memory", &bytes.to_string()]);
-        }
-        for one in run.set_words()? {
-            command.args(["--set", &one]);
-        }
-        let done = command.stdin(Stdio::null()).output().map_err(StudyError::Start)?;
+        let mut command = ranks::command(run, program, self.ranks)?;
+        let done = command.output().map_err(|error| ranks::not_started(&command, &error))?;
         let is = |code: u8| done.status.code() == Some(i32::from(code));
         if is(exit::INTERRUPTED) {
             return Err(StudyError::Interrupted);

@@ -19,7 +19,7 @@ pub fn study(args: &StudyArgs) -> u8 {
     let outcome = match (&args.part, &args.study) {
         (Some(StudyPart::Case(case)), _) => run_one(case),
         (Some(StudyPart::Collect(collect)), _) => {
-            open(&collect.study, &collect.how).and_then(|opened| gather(&opened, collect.json))
+            open(&collect.study, &collect.how).and_then(|opened| gather(&opened, &collect.how, collect.json))
         }
         (None, Some(study)) => run_all(study, args),
         // The command line requires one before it comes to this.
@@ -35,7 +35,8 @@ fn open(study: &Path, how: &StudyHow) -> Result<Study, StudyError> {
 /// Quantities over values and distributions.
 fn run_sweep(sweep: &Sweep, args: &StudyArgs) -> Result<u8, StudyError> {
     let stop = interrupt::watch();
-    let (runner, say_line) = (Processes { stop: stop.clone() }, complain_unless(args.how.quiet));
+    let (runner, say_line) =
+        (Processes { stop: stop.clone(), ranks: args.how.ranks }, complain_unless(args.how.quiet));
     let how = How { runner: &runner, stop, say: &say_line, jobs: args.jobs, threads: args.how.threads };
     let (results, json) = sweep.run(&how)?;
     let text = format!("{}results in {}", sweep::text::text(&results), sweep.out.display());
@@ -69,22 +70,24 @@ fn run_all(study: &Path, args: &StudyArgs) -> Result<u8, StudyError> {
         return run_sweep(&sweep, args);
     }
     let opened = open(study, &args.how)?;
-    let StudyHow { threads, quiet, overrides, .. } = &args.how;
+    let StudyHow { ranks, threads, quiet, overrides, .. } = &args.how;
     if let Some(kind) = args.emit {
         let kind = match kind {
             Emit::Slurm => emit::Emit::Slurm,
             Emit::Parallel => emit::Emit::Parallel,
             Emit::List => emit::Emit::List,
         };
-        let plan = Plan { study, out: &opened.out, jobs: args.jobs, threads: *threads, overrides };
+        let (jobs, ranks, threads) = (args.jobs, *ranks, *threads);
+        let plan = Plan { study, out: &opened.out, jobs, ranks, threads, overrides };
         say(&emit::script(&plan, &opened.runs(), kind));
         return Ok(exit::DONE);
     }
     opened.check_reference()?;
     make_folder(&opened.out)?;
-    let (runner, tell) = (Processes { stop: interrupt::watch() }, complain_unless(*quiet));
+    let (runner, tell) =
+        (Processes { stop: interrupt::watch(), ranks: args.how.ranks }, complain_unless(*quiet));
     opened.launch(&runner, &tell, (args.jobs, *threads)).run_all(&opened.runs())?;
-    gather(&opened, args.json)
+    gather(&opened, &args.how, args.json)
 }
 
 fn run_one(args: &StudyCaseArgs) -> Result<u8, StudyError> {
@@ -92,7 +95,8 @@ fn run_one(args: &StudyCaseArgs) -> Result<u8, StudyError> {
     let (runs, name) = (opened.runs(), &args.case);
     let case = runs.iter().find(|case| case.name == *name).ok_or_else(|| StudyError::NoCase(name.clone()))?;
     make_folder(&opened.out)?;
-    let (runner, tell) = (Processes { stop: interrupt::watch() }, complain_unless(args.how.quiet));
+    let (runner, tell) =
+        (Processes { stop: interrupt::watch(), ranks: args.how.ranks }, complain_unless(args.how.quiet));
     let said = opened.launch(&runner, &tell, (1, args.how.threads)).run_case(case)?;
     if !args.how.quiet {
         say(&format!("{name}: {said}"));
@@ -101,9 +105,9 @@ fn run_one(args: &StudyCaseArgs) -> Result<u8, StudyError> {
 }
 
 /// Reads what has run, writes and prints the results.
-fn gather(opened: &Study, as_json: bool) -> Result<u8, StudyError> {
-    let (runner, tell) = (Processes { stop: Default::default() }, complain_unless(true));
-    let (results, json) = opened.gather(&opened.launch(&runner, &tell, (1, 1)))?;
+fn gather(opened: &Study, how: &StudyHow, as_json: bool) -> Result<u8, StudyError> {
+    let (runner, tell) = (Processes { stop: Default::default(), ranks: how.ranks }, complain_unless(true));
+    let (results, json) = opened.gather(&opened.launch(&runner, &tell, (1, how.threads)))?;
     say(&if as_json {
         json
     } else {

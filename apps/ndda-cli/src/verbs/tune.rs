@@ -29,7 +29,7 @@ pub fn tune(args: &TuneArgs) -> u8 {
 }
 
 fn tune_trial(args: &TuneArgs, trial: &Trial, settings: &Settings) -> Result<u8, TuneError> {
-    let runner = Processes { stop: interrupt::watch() };
+    let runner = Processes { stop: interrupt::watch(), ranks: 1 };
     let tell = complain_unless(args.how.quiet);
     let launch = trial.launch(&runner, &tell, (args.how.jobs, args.how.threads));
     let wanted = Wanted { error: args.error, of: args.of.clone(), budget_s: args.budget_s };

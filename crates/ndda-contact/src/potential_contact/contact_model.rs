@@ -1,6 +1,7 @@
 //! The contact potential as a contact model.
 
 use ndda_mesh::BlockId;
+use ndda_ranks::ExactSum;
 
 use crate::assembly::join_if::join_if;
 use crate::assembly::nodal_forces::{self, ScatterScene};
@@ -110,7 +111,8 @@ impl ContactModel for PotentialContact {
         }
         bond::add_forces(input.blocks, &self.bond_forces, output);
         if !self.openings.is_empty() {
-            report.dilation_work_j = self.forces.iter().map(|force| force.dilation_work_j).sum();
+            let works = self.forces.iter().map(|force| force.dilation_work_j);
+            report.dilation_work_j = works.collect::<ExactSum>().value();
         }
         if self.joints.is_some() {
             self.remember(input, history);

@@ -1,6 +1,7 @@
 //! Balances of energy and momentum, and diagnoses of what a step does not resolve.
 
 pub(crate) mod block_diagnostics;
+pub(crate) mod block_sums;
 pub(crate) mod creep;
 pub(crate) mod energies;
 pub(crate) mod hops;

@@ -5,11 +5,12 @@ use crate::step::report::StepReport;
 use std::time::Instant;
 
 use ndda_contact::ContactReport;
-use ndda_mesh::Vec3;
+use ndda_ranks::ExactSum;
 
+use crate::diagnostics::block_sums::ExactVector;
 use crate::diagnostics::ringing::Quadrature;
-use crate::step::Simulation;
 use crate::step::report::Iterations;
+use crate::step::{Audit, Simulation};
 
 /// Seconds of the stages of a step.
 pub(super) struct StageWatch(Instant);
@@ -42,40 +43,25 @@ impl Simulation {
 
     /// Impulses, work and extremes of the step.
     pub(super) fn account_for_step(&mut self, contact: ContactReport, iterations: Iterations) -> StepReport {
-        let (mut force, mut torque) = (self.loads.force(), Vec3::zeros());
-        let mut exchanged_n = self.loads.size_n();
-        let (mut impulse, mut orbital) = (Vec3::zeros(), Vec3::zeros());
+        let sums = &mut self.audit.step_sums;
+        sums.clear();
+        sums.force.add(&self.loads.force());
+        sums.exchanged_n.add(self.loads.size_n());
+        sums.friction_j.add(contact.dilation_work_j);
         let (mut rate2, mut speed_m_s) = (0.0f64, 0.0f64);
-        let quadrature = self.quadrature();
-        let (mut friction_j, mut motion_j, mut load_j, mut damping_j) = (0.0, 0.0, 0.0, 0.0);
-        let mut radiated_j = 0.0;
-        let bodies = &self.bodies;
-        self.audit.ledger.blocks().add_ringing(&quadrature, |block| &bodies[block].report.drive);
-        for body in bodies {
+        for body in &self.bodies {
             let report = &body.report;
-            force += report.reaction - report.motion_impulse / self.part_s;
-            exchanged_n += report.reaction.norm();
-            torque += report.outside_torque;
-            impulse += report.motion_impulse;
-            orbital += report.orbital_impulse;
-            friction_j += report.friction_work_j;
-            motion_j += report.motion_work_j;
-            load_j += report.load_work_j;
-            damping_j += report.damping_work_j;
-            radiated_j += report.radiated_j;
+            sums.add(report, self.part_s);
             rate2 = rate2.max(report.contact_rate2);
             speed_m_s = speed_m_s.max(report.speed_m_s);
         }
-        if contact.dilation_work_j != 0.0 {
-            friction_j += contact.dilation_work_j;
-        }
+        let quadrature = self.quadrature();
+        let bodies = &self.bodies;
+        self.audit.ledger.blocks().add_ringing(&quadrature, |block| &bodies[block].report.drive);
         let travel = self.travel_of_step(speed_m_s);
         let h = self.part_s * rate2.sqrt();
-        self.audit.ledger.watch_load(exchanged_n);
-        self.audit.ledger.add_impulse(self.part_s, &self.weights, force, torque);
-        self.audit.ledger.add_whole_impulse(impulse, orbital);
-        self.audit.ledger.add_work(friction_j, motion_j, load_j, damping_j);
-        self.audit.ledger.add_radiated(radiated_j);
+        let Audit { ledger, step_sums, .. } = &mut self.audit;
+        ledger.add_sums(step_sums, self.part_s, &self.weights);
         if self.problem.has_impulses {
             self.record_impulses();
         }
@@ -115,36 +101,37 @@ impl Simulation {
     fn record_contact_damping(&mut self) {
         let Some(model) = self.contact.as_mut().filter(|model| model.damps()) else { return };
         let (position, moved) = (&self.scratch.contact_position, &self.scratch.moved);
-        let mut work_j = 0.0;
-        model.each_damping_work(&self.problem.blocks, position, moved, &mut |_, _, part_j| work_j += part_j);
-        self.audit.ledger.add_restitution_work(work_j);
+        let mut work_j = ExactSum::new();
+        let add = &mut |_, _, part_j| work_j.add(part_j);
+        model.each_damping_work(&self.problem.blocks, position, moved, add);
+        self.audit.ledger.add_restitution_work(work_j.value());
     }
 
     /// Records the work of normal contact in the step on both blocks of each pair; returns the sum over single facets, without
     /// sign, where steps are controlled [J].
     pub(super) fn record_contact_work(&mut self, contact: &ContactReport) -> f64 {
         let works = self.contact_does_work(contact);
-        let mut contact_work_j = 0.0;
+        let mut contact_work_j = ExactSum::new();
         self.audit.travel.touching.clear();
         if works || self.contact_is_damped(contact) {
             let Self { scratch, state, .. } = self;
             each_node(&mut scratch.moved, &state.position, |moved, x| *moved = x - *moved);
             self.record_contact_damping();
         }
-        let Some(model) = self.contact.as_mut().filter(|_| works) else { return contact_work_j };
+        let Some(model) = self.contact.as_mut().filter(|_| works) else { return 0.0 };
         let (books, travel) = (self.audit.ledger.blocks(), &mut self.audit.travel);
         model.each_work(&self.problem.blocks, &self.scratch.moved, &mut |a, b, work_j| {
             books.add_work(a, b, work_j);
             if travel.notes_touching {
                 travel.note_touching(a, b);
-                contact_work_j += work_j.abs();
+                contact_work_j.add(work_j.abs());
             }
         });
         model.each_coulomb_gap(&self.problem.blocks, &self.scratch.moved, &mut |a, b, gap_j| {
             books.add_coulomb_gap(a, b, gap_j);
         });
         books.close_step();
-        contact_work_j
+        contact_work_j.value()
     }
 
     /// Records the slip of shear springs in the step.
@@ -161,9 +148,14 @@ impl Simulation {
 
     /// Records the impulses of damping and of prescribed velocities, and how well the step resolves damping.
     pub(super) fn record_impulses(&mut self) {
+        let (mut impulse, mut moment) = (ExactVector::default(), ExactVector::default());
+        let mut error_m_s: f64 = 0.0;
         for report in self.bodies.iter().map(|body| &body.report) {
-            self.audit.ledger.add_impulses(report.impulse, report.impulse_moment, report.damping_error_m_s);
+            impulse.add(&report.impulse);
+            moment.add(&report.impulse_moment);
+            error_m_s = error_m_s.max(report.damping_error_m_s);
         }
+        self.audit.ledger.add_impulses(impulse.value(), moment.value(), error_m_s);
     }
 
     /// Records the lateral drift of clamped blocks.

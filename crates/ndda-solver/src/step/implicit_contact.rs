@@ -12,11 +12,15 @@
 //! contact, no global matrix, and K̃ δ comes out of the recursion without a product. s follows the slope of Π along δ.
 //! The forces of the last evaluation, not f, drive the step, so action equals reaction however far Newton got.
 
+use std::ops::Range;
+
 use ndda_contact::{ContactError, ContactHistory, ContactInput, ContactReport, PairStiffness};
 use ndda_mesh::{BlockId, Vec3};
+use ndda_ranks::ExactSum;
 
 use crate::bodies::body::Body;
 use crate::bodies::congruent_groups::{NodeSlices, each_of_run, for_each_run};
+use crate::diagnostics::block_sums::over_blocks;
 use crate::error::StepError;
 use crate::step::line_search::Search;
 use crate::step::report::Iterations;
@@ -117,7 +121,7 @@ impl Simulation {
                 (evaluated, _) => evaluated?,
             };
             self.place_answer(newton)?;
-            let misfit2 = dot(&newton.residual, &newton.answer);
+            let misfit2 = self.dot(&newton.residual, &newton.answer);
             let misfit = if misfit2.is_nan() { f64::NAN } else { misfit2.max(0.0).sqrt() };
             let scale = self.motion_of(&self.scratch.force).max(self.motion_of(&newton.force));
             let scale = scale.max(self.motion_of(self.loads.total()));
@@ -135,14 +139,14 @@ impl Simulation {
                     residual,
                 });
             }
-            let slope = -dot(&newton.residual, &newton.change);
+            let slope = -self.dot(&newton.residual, &newton.change);
             if let Some(next) = search.as_mut().and_then(|search| search.next_stride(stride, slope)) {
                 stride = next;
                 continue;
             }
             newton.base.copy_from_slice(&newton.force);
             let longest = self.find_change(newton)?;
-            search = Some(Search::new(-dot(&newton.residual, &newton.change), longest));
+            search = Some(Search::new(-self.dot(&newton.residual, &newton.change), longest));
             stride = 1.0;
         }
     }
@@ -176,7 +180,8 @@ impl Simulation {
             let masses = &self.shape(block).operator.node_mass;
             self.problem.blocks.nodes_of(block).zip(masses).map(|(node, m)| force2(node) / m).sum::<f64>()
         };
-        (self.problem.blocks.ids().map(of_block).sum::<f64>() / self.weights.mass_per_s2).sqrt()
+        (self.problem.blocks.ids().map(of_block).collect::<ExactSum>().value() / self.weights.mass_per_s2)
+            .sqrt()
     }
 
     /// f ← base + stride · K̃ δ, x* ← x + G(f), force ← f_c there, residual ← f_c − f.
@@ -260,12 +265,12 @@ impl Simulation {
         newton.k_delta.fill(Vec3::zeros());
         newton.direction.copy_from_slice(&newton.answer);
         newton.direction_lifted.copy_from_slice(&newton.rest);
-        let mut size = dot(&newton.rest, &newton.answer);
+        let mut size = self.dot(&newton.rest, &newton.answer);
         let enough = KRYLOV_REDUCTION2 * size;
         for step in 0..MOST_KRYLOV {
             newton.iterations.krylov += 1;
             newton.multiply();
-            let curvature = dot(&newton.direction, &newton.product);
+            let curvature = self.dot(&newton.direction, &newton.product);
             // Contact that softens as it deepens, and bonds that break, bend Π the other way: take what there is, at least the first direction.
             if curvature <= 0.0 {
                 if step == 0 {
@@ -279,7 +284,7 @@ impl Simulation {
             add(along, &newton.direction_lifted, &mut newton.k_delta);
             add(-along, &newton.product, &mut newton.rest);
             self.respond(newton)?;
-            let next = dot(&newton.rest, &newton.answer);
+            let next = self.dot(&newton.rest, &newton.answer);
             if next <= enough {
                 break;
             }
@@ -314,6 +319,13 @@ impl Simulation {
             newton.touched[self.problem.blocks.block_of(node).index()] = true;
         }
         Ok(())
+    }
+
+    /// a·b over all nodes, the same for any order of blocks.
+    fn dot(&self, a: &[Vec3], b: &[Vec3]) -> f64 {
+        let of_nodes =
+            |nodes: Range<usize>| a[nodes.clone()].iter().zip(&b[nodes]).map(|(a, b)| a.dot(b)).sum();
+        over_blocks(self.problem.blocks.node_starts(), of_nodes)
     }
 
     /// answer ← K̃⁻¹ rest, block by block.
@@ -373,8 +385,4 @@ fn add(a: f64, x: &[Vec3], y: &mut [Vec3]) {
 /// y ← x + a y.
 fn turn(a: f64, x: &[Vec3], y: &mut [Vec3]) {
     y.iter_mut().zip(x).for_each(|(y, x)| *y = x + a * *y);
-}
-
-fn dot(a: &[Vec3], b: &[Vec3]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a.dot(b)).sum()
 }

@@ -5,6 +5,7 @@ use std::ops::Range;
 use ndda_fem::{Between, Table};
 use ndda_mesh::Vec3;
 
+use crate::diagnostics::block_sums::{ExactVector, over_blocks};
 use crate::step::Simulation;
 use crate::step::follower::{FollowerPressure, Places};
 use crate::step::state::State;
@@ -31,6 +32,8 @@ impl VaryingLoad {
 /// All loads but contact.
 #[derive(Clone, Debug)]
 pub(crate) struct Loads {
+    /// First node of each block, with the end appended.
+    starts: Vec<u32>,
     constant: Vec<Vec3>,
     /// The part of them that is not reactions of quiet faces; empty while there are none.
     given: Vec<Vec3>,
@@ -52,16 +55,17 @@ pub(crate) struct Loads {
 }
 
 impl Loads {
-    /// Constant forces per node, those that vary, and pressures, on nodes that are at rest somewhere.
+    /// Constant forces per node, those that vary, and pressures, on nodes that are at rest somewhere; the first node of each block is given, with the end appended.
     pub(crate) fn new(
         constant: Vec<Vec3>,
         varying: Vec<VaryingLoad>,
         pressures: Vec<FollowerPressure>,
-        rest: Places,
+        (starts, rest): (Vec<u32>, Places),
     ) -> Self {
-        let (force, size_n) = sum_and_size(&constant);
+        let (force, size_n) = sum_and_size(&constant, &starts);
         let nodes = if varying.is_empty() && pressures.is_empty() { 0 } else { constant.len() };
         let mut loads = Self {
+            starts,
             constant,
             given: Vec::new(),
             varying,
@@ -81,7 +85,7 @@ impl Loads {
     /// None at all.
     pub(crate) fn none() -> Self {
         let nowhere = Places { position: &[], velocity: &[], lead_s: 0.0 };
-        Self::new(Vec::new(), Vec::new(), Vec::new(), nowhere)
+        Self::new(Vec::new(), Vec::new(), Vec::new(), (Vec::new(), nowhere))
     }
 
     /// Makes the varying ones their means between two times [s], pressures on nodes where they are then.
@@ -105,7 +109,7 @@ impl Loads {
         }
         let sums = self.constant.iter().zip(&self.changing);
         self.total.iter_mut().zip(sums).for_each(|(total, (a, b))| *total = a + b);
-        (self.force, self.size_n) = sum_and_size(&self.total);
+        (self.force, self.size_n) = sum_and_size(&self.total, &self.starts);
     }
 
     /// Lets forces per node [N] act from now on, beside the others.
@@ -136,7 +140,7 @@ impl Loads {
         nodes.iter().for_each(|range| self.constant[range.clone()].fill(Vec3::zeros()));
         self.varying.iter_mut().for_each(|load| load.forces.retain(|(node, _)| is_there(*node)));
         self.pressures.retain(|pressure| pressure.first_node().is_none_or(is_there));
-        (self.force, self.size_n) = sum_and_size(&self.constant);
+        (self.force, self.size_n) = sum_and_size(&self.constant, &self.starts);
         self.place(0.0, 0.0, places);
     }
 
@@ -148,7 +152,7 @@ impl Loads {
         let sums = self.given.iter().zip(reactions);
         self.constant.iter_mut().zip(sums).for_each(|(sum, (given, kept))| *sum = given + kept);
         if self.changing.is_empty() {
-            (self.force, self.size_n) = sum_and_size(&self.constant);
+            (self.force, self.size_n) = sum_and_size(&self.constant, &self.starts);
         }
     }
 
@@ -193,9 +197,15 @@ impl Loads {
     }
 }
 
-/// Sum of forces, and of how large each is.
-fn sum_and_size(forces: &[Vec3]) -> (Vec3, f64) {
-    (forces.iter().sum(), forces.iter().map(|force| force.norm()).sum())
+/// Sum of forces on the nodes of all blocks, and of how large each is.
+fn sum_and_size(forces: &[Vec3], starts: &[u32]) -> (Vec3, f64) {
+    let mut sum = ExactVector::default();
+    let size_n = over_blocks(starts, |nodes| {
+        let of_block = &forces[nodes];
+        sum.add(&of_block.iter().sum());
+        of_block.iter().map(|force| force.norm()).sum()
+    });
+    (sum.value(), size_n)
 }
 
 impl Simulation {

@@ -54,6 +54,7 @@ use crate::bodies::congruent_groups::CongruentGroups;
 use crate::bodies::prototype::Prototype;
 use crate::bodies::workspaces::{BorrowedRun, Workspaces};
 use crate::bolts::set::Bolts;
+use crate::diagnostics::block_sums::StepSums;
 use crate::diagnostics::ledger::Ledger;
 use crate::error::StepError;
 use crate::integrators::time_integrator::{StepWeights, TimeIntegrator};
@@ -168,6 +169,7 @@ pub(crate) struct Scratch {
 /// Observers of a run: balances, diagnostics, timing.
 pub(crate) struct Audit {
     pub(crate) ledger: Ledger,
+    pub(crate) step_sums: Box<StepSums>,
     pub(crate) stages: StageTimes,
     pub(crate) travel: Travel,
     /// Facets in contact in the last step, if they were requested.

@@ -5,9 +5,11 @@ use std::time::Instant;
 use ndda_contact::{ContactInput, ContactReport, FacetContact};
 use ndda_fem::stress::{cauchy_stress, largest_strain, smallest_volume_ratio};
 use ndda_mesh::{BlockId, Mat3, TetId, Vec3};
+use ndda_ranks::ExactSum;
 
 use crate::bodies::kind::BodyKind;
 use crate::bodies::prototype::Prototype;
+use crate::diagnostics::block_sums::{SampleSums, over_blocks};
 use crate::diagnostics::energies::{Sample, Vibration};
 use crate::error::StepError;
 use crate::integrators::time_integrator::StepWeights;
@@ -28,13 +30,13 @@ impl Simulation {
         let mut sample = Sample { step: self.state.step, time_s, ..Sample::default() };
         sample.smallest_volume_ratio = (f64::INFINITY, 0);
         let mut vibration = Vibration::default();
+        let mut sums = SampleSums::default();
         for block in self.problem.blocks.ids() {
-            self.add_block_to(&mut sample, block)?;
+            self.add_block_to(&mut sample, &mut sums, block)?;
             vibration = self.worse_vibration(block, vibration)?;
         }
         self.audit.ledger.watch_vibration(vibration, self.problem.integrator.damps_vibrations());
-        let loads = self.loads.constant().iter().zip(&self.state.position).zip(self.start_position());
-        sample.load_j = -loads.map(|((f, x), rest)| f.dot(&(x - rest))).sum::<f64>();
+        sums.write(&mut sample);
         if let Some(model) = &mut self.contact {
             let State { position, velocity, contact_offset, .. } = &self.state;
             let position =
@@ -59,23 +61,33 @@ impl Simulation {
         Ok(sample)
     }
 
-    fn add_block_to(&mut self, sample: &mut Sample, block: BlockId) -> Result<(), StepError> {
+    fn add_block_to(
+        &mut self,
+        sample: &mut Sample,
+        sums: &mut SampleSums,
+        block: BlockId,
+    ) -> Result<(), StepError> {
         let (range, time_s, contact_offset) =
             (self.problem.blocks.nodes_of(block), sample.time_s, self.state.contact_offset_of(block));
+        sums.load_j.add(-self.load_work_j(range.clone()));
         let mut borrowed = self.problem.lend_memory(std::slice::from_mut(&mut self.bodies[block.index()]));
         let body = borrowed.one();
         let shape = &self.problem.shapes[body.shape];
         let (position, velocity) = (&self.state.position[range.clone()], &self.state.velocity[range]);
-        sample.kinetic_j += shape.operator.kinetic_energy_j(velocity);
+        sums.kinetic_j.add(shape.operator.kinetic_energy_j(velocity));
         let momentum = shape.operator.momentum(velocity);
-        sample.momentum += momentum;
-        sample.angular_momentum += shape.operator.angular_momentum(&Vec3::zeros(), position, velocity);
+        sums.momentum.add(&momentum);
         // Where contact sees the block: there its forces have no torque on all blocks together.
-        sample.angular_momentum += contact_offset.cross(&momentum);
+        let offset_moment = contact_offset.cross(&momentum);
+        let angular_momentum = shape.operator.angular_momentum(&Vec3::zeros(), position, velocity);
+        sums.angular_momentum.add(&(angular_momentum + offset_moment));
+        let (mut momentum_scale, mut angular_scale) = (0.0, 0.0);
         for ((x, v), &m) in position.iter().zip(velocity).zip(&shape.operator.node_mass) {
-            sample.momentum_scale += m * v.norm();
-            sample.angular_scale += m * x.norm() * v.norm();
+            momentum_scale += m * v.norm();
+            angular_scale += m * x.norm() * v.norm();
         }
+        sums.momentum_scale.add(momentum_scale);
+        sums.angular_scale.add(angular_scale);
         let since_s = self.audit.ledger.since_sample_s(time_s);
         let (spin_rad_s, rate_rad_s) = lag_rate(shape, &self.weights, self.part_s, position, velocity);
         self.audit.ledger.blocks().add_lag(block, since_s, spin_rad_s, rate_rad_s);
@@ -98,14 +110,20 @@ impl Simulation {
         let failed = |source| StepError::Block { time_s, block: name(), source };
         let strain = elastic.strain_energy_j(shape, position);
         let strain_j = strain.map_err(|source| failed(source.into()))?;
-        sample.strain_j += strain_j;
+        sums.strain_j.add(strain_j);
         self.audit.ledger.blocks().note_strain(block, strain_j);
         let displacement = elastic.displacement_in_frame();
         if strain_bound(shape, displacement) > self.audit.ledger.largest_strain() {
             self.audit.ledger.watch_strain(largest_strain(&shape.operator, displacement), block);
         }
-        sample.spring_j += elastic.spring_energy_j(shape, position, time_s);
+        sums.spring_j.add(elastic.spring_energy_j(shape, position, time_s));
         Ok(())
+    }
+
+    /// Work of constant loads on some nodes on their way from where they started [J].
+    fn load_work_j(&self, nodes: std::ops::Range<usize>) -> f64 {
+        let moved = self.state.position[nodes.clone()].iter().zip(&self.start_position()[nodes.clone()]);
+        self.loads.constant()[nodes].iter().zip(moved).map(|(f, (x, start))| f.dot(&(x - start))).sum()
     }
 
     /// Vibrations of a block that a step turns over, if they are worse than those found so far, those of before, and rounding.
@@ -143,9 +161,15 @@ impl Simulation {
             let digit_m = position.iter().map(last_digit).fold(0.0, f64::max);
             self.shape(block).stiffness_n_m * digit_m * digit_m
         });
-        let contact = self.scratch.contact_stiffness.iter().zip(&self.state.position);
-        let contact = contact.map(|(stiffness, x)| stiffness * last_digit(x).powi(2));
-        0.5 * (elastic.sum::<f64>() + contact.sum::<f64>()) * self.state.step as f64
+        let contact_stiffness = &self.scratch.contact_stiffness;
+        let of_nodes = |nodes: std::ops::Range<usize>| {
+            let contact = contact_stiffness[nodes.clone()].iter().zip(&self.state.position[nodes]);
+            contact.map(|(stiffness, x)| stiffness * last_digit(x).powi(2)).sum()
+        };
+        let has_contact = !contact_stiffness.is_empty();
+        let contact =
+            if has_contact { over_blocks(self.problem.blocks.node_starts(), of_nodes) } else { 0.0 };
+        0.5 * (elastic.collect::<ExactSum>().value() + contact) * self.state.step as f64
     }
 
     /// Whether the next steps note what each facet does.

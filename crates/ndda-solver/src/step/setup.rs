@@ -137,6 +137,7 @@ impl Simulation {
             },
             audit: Audit {
                 ledger: Ledger::new(Default::default(), BlockDiagnostics::default(), 0.0),
+                step_sums: Default::default(),
                 stages: StageTimes::default(),
                 travel: Travel::new(smallest_height_m),
                 contacts: None,
@@ -287,7 +288,8 @@ impl Simulation {
         }
         let State { position, velocity, .. } = &self.state;
         let rest = Places { position, velocity, lead_s: 0.0 };
-        self.loads = Loads::new(constant, varying, pressures, rest);
+        let starts = self.problem.blocks.node_starts().to_vec();
+        self.loads = Loads::new(constant, varying, pressures, (starts, rest));
     }
 
     /// Opens the ledger, with the accelerations at the start for integrators that need them.

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::case::Case;
+use super::ranks::Starter;
 
 /// Scheduler or shell that is to run the cases.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,7 +24,9 @@ pub struct Plan<'a> {
     pub out: &'a Path,
     /// Cases at a time.
     pub jobs: u16,
-    /// Threads of each run.
+    /// Ranks that take a run together; one is the ordinary program.
+    pub ranks: u16,
+    /// Threads of each run, or of each of its ranks.
     pub threads: u16,
     /// Values that are set in its scene, as `path=value`.
     pub overrides: &'a [String],
@@ -34,6 +37,9 @@ pub fn script(plan: &Plan, cases: &[Case], emit: Emit) -> String {
     let study = quoted(&plan.study.display().to_string());
     let command = format!("ndda study case {study}");
     let mut options = format!("--out {} --threads {}", quoted(&plan.out.display().to_string()), plan.threads);
+    if plan.ranks > 1 {
+        options += &format!(" --ranks {}", plan.ranks);
+    }
     plan.overrides.iter().for_each(|one| options += &format!(" --set {}", quoted(one)));
     let names: Vec<&str> = cases.iter().map(|case| case.name.as_str()).collect();
     match emit {
@@ -46,15 +52,25 @@ pub fn script(plan: &Plan, cases: &[Case], emit: Emit) -> String {
             names.join(" \\\n  "),
         ),
         Emit::Slurm => format!(
-            "#!/bin/sh\n#SBATCH --array=0-{}%{}\n#SBATCH --cpus-per-task={}\n\
+            "#!/bin/sh\n#SBATCH --array=0-{}%{}\n{}#SBATCH --cpus-per-task={}\n\
              # Afterwards: ndda study collect {study} {options}\nset -- \\\n  {}\nshift \"$SLURM_ARRAY_TASK_ID\"\n\
              exec {command} \"$1\" {options}",
             cases.len() - 1,
             plan.jobs,
+            tasks(plan),
             plan.threads,
             names.join(" \\\n  "),
         ),
     }
+}
+
+/// What Slurm is to give each case where several ranks take it, and how they are started there.
+fn tasks(plan: &Plan) -> String {
+    if plan.ranks == 1 {
+        return String::new();
+    }
+    let starter = Starter::Slurm.words(plan.ranks, plan.threads).join(" ");
+    format!("# Each case runs by {starter} ndda-mpi run\n#SBATCH --ntasks={}\n", plan.ranks)
 }
 
 /// One word of a shell.
@@ -72,11 +88,15 @@ mod tests {
     use super::*;
 
     fn emitted(emit: Emit) -> String {
+        emitted_for(emit, 1)
+    }
+
+    fn emitted_for(emit: Emit, ranks: u16) -> String {
         let case =
             |name: &str| Case { name: name.into(), labels: Vec::new(), overrides: Vec::new(), repeats: 1 };
         let overrides = ["time.end_s=(1)".into()];
         let (study, out) = (Path::new("it's.ron"), Path::new("out/s"));
-        let plan = Plan { study, out, jobs: 3, threads: 2, overrides: &overrides };
+        let plan = Plan { study, out, jobs: 3, ranks, threads: 2, overrides: &overrides };
         script(&plan, &[case("a=1"), case("a=2")], emit)
     }
 
@@ -92,6 +112,42 @@ mod tests {
         let script = emitted(Emit::Slurm);
         assert!(script.contains("#SBATCH --array=0-1%3\n#SBATCH --cpus-per-task=2\n"), "{script}");
         assert!(script.contains("set -- \\\n  a=1 \\\n  a=2\nshift"), "{script}");
+    }
+
+    #[test]
+    fn several_ranks_are_tasks_of_an_array() {
+        let script = emitted_for(Emit::Slurm, 4);
+        let expected = "#SBATCH --array=0-1%3\n\
+                        # Each case runs by srun --ntasks=4 --cpus-per-task=2 --cpu-bind=cores ndda-mpi run\n\
+                        #SBATCH --ntasks=4\n#SBATCH --cpus-per-task=2\n";
+        assert!(script.contains(expected), "{script}");
+        assert!(
+            script.ends_with("\"$1\" --out out/s --threads 2 --ranks 4 --set 'time.end_s=(1)'"),
+            "{script}"
+        );
+        assert!(
+            script.contains("ndda study collect 'it'\\''s.ron' --out out/s --threads 2 --ranks 4"),
+            "{script}"
+        );
+        // One rank is the ordinary program.
+        assert!(
+            [Emit::Slurm, Emit::Parallel, Emit::List].iter().all(|kind| !emitted(*kind).contains("rank"))
+        );
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_shell_reads_what_is_emitted() {
+        use std::io::Write;
+        for (kind, ranks) in
+            [Emit::Slurm, Emit::Parallel, Emit::List].into_iter().flat_map(|k| [(k, 1), (k, 4)])
+        {
+            let mut shell = std::process::Command::new("sh");
+            let mut shell = shell.arg("-n").stdin(std::process::Stdio::piped()).spawn().expect("a shell");
+            let script = emitted_for(kind, ranks);
+            shell.stdin.take().expect("its input").write_all(script.as_bytes()).expect("it reads");
+            assert!(shell.wait().expect("it ends").success(), "{script}");
+        }
     }
 
     #[test]

@@ -31,6 +31,9 @@ pub enum StudyError {
     /// The system does not tell processor times.
     #[error("this system does not report processor times: leave out `clock: Processor`")]
     NoProcessorTime,
+    /// The first rank reports its own processor time only.
+    #[error("processor times of several ranks are not known: leave out `clock: Processor`, or --ranks")]
+    ProcessorTimeOfRanks,
     /// No such case.
     #[error("the study has no case `{0}`: `ndda study STUDY --emit list` prints all")]
     NoCase(String),

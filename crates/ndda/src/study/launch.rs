@@ -22,7 +22,7 @@ pub struct Launch<'a> {
     pub out: &'a Path,
     /// Cases at a time.
     pub jobs: u16,
-    /// Threads of each.
+    /// Threads of each, or of each of its ranks.
     pub threads: u16,
     /// Runner of a case.
     pub runner: &'a dyn CaseRunner,
@@ -35,7 +35,7 @@ impl Launch<'_> {
     pub fn identity(&self, case: &Case) -> Identity {
         // A scene that is wrong has a fingerprint, too: its errors.
         let scene = fingerprint(self.loaded, case).unwrap_or_else(|errors| errors.render(false));
-        Identity::new(scene, self.threads, case.repeats)
+        Identity::new(scene, (self.runner.ranks(), self.threads), case.repeats)
     }
 
     /// The record of a case that was run as it would run now.
@@ -87,6 +87,9 @@ impl Launch<'_> {
     pub fn run_case(&self, case: &Case) -> Result<String, StudyError> {
         if self.finished(case)?.is_some() {
             return Ok("has run".into());
+        }
+        if self.loaded.study.clock == Clock::Processor && self.runner.ranks() > 1 {
+            return Err(StudyError::ProcessorTimeOfRanks);
         }
         let folder = folder(self.out, &case.name);
         fs::create_dir_all(&folder).map_err(|source| WriteError::Io {

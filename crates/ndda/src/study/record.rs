@@ -32,18 +32,26 @@ pub struct Identity {
     pub scene: String,
     /// Version and commit of the program.
     pub program: String,
-    /// Threads of a run.
+    /// Ranks that take a run together.
+    #[serde(default = "alone")]
+    pub ranks: u16,
+    /// Threads of a run, or of each rank.
     pub threads: u16,
     /// Runs.
     pub repeats: u32,
 }
 
 impl Identity {
-    /// The identity of what this program would run now.
-    pub fn new(scene: String, threads: u16, repeats: u32) -> Self {
+    /// The identity of what this program would run now, by so many ranks with so many threads each.
+    pub fn new(scene: String, (ranks, threads): (u16, u16), repeats: u32) -> Self {
         let program = format!("{} {} [{}]", env!("CARGO_PKG_VERSION"), machine::COMMIT, machine::FEATURES);
-        Self { scene, program, threads, repeats }
+        Self { scene, program, ranks, threads, repeats }
     }
+}
+
+/// Ranks of a record that was written before there were any.
+fn alone() -> u16 {
+    1
 }
 
 /// Why a run did not reach its end.

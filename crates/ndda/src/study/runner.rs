@@ -51,6 +51,11 @@ pub trait CaseRunner: Sync {
     /// # Errors
     /// [`StudyError`] where the study cannot go on, or somebody asks it to end.
     fn run(&self, run: &CaseRun) -> Result<Option<(Cause, String)>, StudyError>;
+
+    /// Ranks that take a run together.
+    fn ranks(&self) -> u16 {
+        1
+    }
 }
 
 /// Runs cases in this process.

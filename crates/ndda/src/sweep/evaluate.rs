@@ -95,7 +95,7 @@ impl<'a> Evaluator<'a> {
     fn identity(&self, case: &SweepCase) -> String {
         // A scene that is wrong has a fingerprint, too: its errors.
         let scene = fingerprint(&self.sweep.loaded, &case.case).unwrap_or_else(|errors| errors.render(false));
-        let program = Identity::new(scene, 1, 1);
+        let program = Identity::new(scene, (1, 1), 1);
         let safety = match self.sweep.wants_safety() {
             true => format!(" safety {:e} {:?}", self.sweep.loaded.study.safety_error, self.sweep.trial),
             false => String::new(),

@@ -16,8 +16,8 @@ pub(super) const SHARE_BLOCKS: usize = 16;
 /// ∫ φ dV over the parts of tetrahedra of other blocks that are in some blocks.
 #[derive(Default)]
 pub(super) struct BlockShares {
-    /// Pair of blocks in [`Candidates::neighbours`], and the share of one tetrahedron [m³]; by block, then by tetrahedron.
-    pub(super) of_pair: Vec<(u32, f64)>,
+    /// Pair of blocks in [`Candidates::neighbours`], whether the block is the second of it, and the share of one tetrahedron [m³]; by block, then by tetrahedron.
+    pub(super) of_pair: Vec<(u32, bool, f64)>,
 }
 
 /// Scratch memory of a thread.
@@ -50,15 +50,16 @@ impl BlockShares {
         scratch: &mut ShareScratch,
     ) {
         self.of_pair.clear();
-        for block in blocks {
-            scratch.list_pieces(input, parts, BlockId(block as u32));
+        for block in blocks.map(|block| BlockId(block as u32)) {
+            scratch.list_pieces(input, parts, block);
             scratch.pieces.sort_unstable_by_key(|piece| (piece.tet, piece.number));
             for pieces in scratch.pieces.chunk_by(|a, b| a.tet == b.tet) {
                 let Piece { pair, volume_m3, .. } = pieces[0];
                 let integral = pieces.iter().fold(0.0, |sum, piece| sum + piece.flux_m3);
                 // ∫ φ over the whole tetrahedron is V/4: that is what a contained centroid leaves out.
                 let missing = if has_centroid(integral, volume_m3) { 0.25 * volume_m3 } else { 0.0 };
-                self.of_pair.push((pair, integral + missing));
+                let is_second = parts.candidates.neighbours[pair as usize].1 == block;
+                self.of_pair.push((pair, is_second, integral + missing));
             }
         }
     }

@@ -6,7 +6,7 @@
 
 use ndda_mesh::geometry::Aabb;
 use ndda_mesh::{BlockId, TetId, Vec3};
-use ndda_ranks::RanksError;
+use ndda_ranks::{ExactSum, RanksError};
 use pulp::Arch;
 use rayon::prelude::*;
 
@@ -37,6 +37,8 @@ pub(crate) struct BlockOverlaps {
     /// (smaller, larger), ascending.
     pairs: Vec<(BlockId, BlockId)>,
     overlap_m3: Vec<f64>,
+    /// The second block's part of it, where parts are found apart.
+    second_m3: Vec<f64>,
     /// ∫ φ dA over the pieces of both surfaces [m²].
     pressure_m2: Vec<f64>,
     /// Place in `pairs` of each facet that touches.
@@ -61,7 +63,7 @@ impl BlockOverlaps {
 
     /// Σ w(U) [m³].
     pub(crate) fn energy_m3(&self, law: OverlapLaw) -> f64 {
-        self.overlap_m3.iter().map(|&overlap| law.energy_m3(overlap)).sum()
+        self.overlap_m3.iter().map(|&overlap| law.energy_m3(overlap)).collect::<ExactSum>().value()
     }
 
     /// Pairs of blocks and their w(U) [m³].
@@ -187,9 +189,14 @@ impl BlockOverlaps {
         let grain = GRAIN_PAIRS.div_ceil(share_pairs.max(1));
         let shares = self.shares.par_iter_mut().enumerate().with_min_len(grain);
         shares.for_each_init(ShareScratch::default, place);
-        for &(k, share_m3) in self.shares.iter().flat_map(|shares| &shares.of_pair) {
-            self.overlap_m3[k as usize] += share_m3;
+        // Both blocks' parts of a pair apart, so that it does not matter which comes first.
+        self.second_m3.clear();
+        self.second_m3.resize(self.pairs.len(), 0.0);
+        for &(k, is_second, share_m3) in self.shares.iter().flat_map(|shares| &shares.of_pair) {
+            let sums = if is_second { &mut self.second_m3 } else { &mut self.overlap_m3 };
+            sums[k as usize] += share_m3;
         }
+        self.overlap_m3.iter_mut().zip(&self.second_m3).for_each(|(first, second)| *first += second);
     }
 
     /// Any potential, over the overlaps of the cells of blocks that no face keeps apart.
@@ -225,7 +232,13 @@ impl Cells<'_> {
     /// U of two blocks: every pair of their cells whose boxes touch.
     fn overlap_of(&self, a: BlockId, b: BlockId, room: &mut [Polyhedron; 2]) -> f64 {
         let block_box = |block| Aabb::around(&self.input.position[self.input.blocks.nodes_of(block)]);
-        let (box_a, box_b) = (block_box(a), block_box(b));
+        let (mut a, mut b, mut box_a, mut box_b) = (a, b, block_box(a), block_box(b));
+        // Their roles differ, so that the sum would round otherwise if the scene listed them the other way round: places tell them apart.
+        let place = |bounds: &Aabb| [bounds.min, bounds.max].map(|corner| [corner.x, corner.y, corner.z]);
+        if place(&box_b) < place(&box_a) {
+            std::mem::swap(&mut a, &mut b);
+            std::mem::swap(&mut box_a, &mut box_b);
+        }
         // Near the overlap, so that map coordinates lose no digits.
         let origin = box_a.min.sup(&box_b.min);
         let (of_a, of_b) =
