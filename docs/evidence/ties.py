@@ -12,8 +12,8 @@ number (two: what is added, and the factor), how the two compare, and when. Sour
   ndda ARGUMENTS: QUANTITY             a run of the program, with its results in a folder
 
 A quantity is `json FILE /PATH` (a slash in a key is ~1), `history COLUMN OPERATION` or `said PATTERN`, the first group of a regular expression in what the program
-prints. Operations are last, first, min, max, absmax and mean, with two times between which they count, at TIME, and change A B C D, the
-mean between C and D less that between A and B.
+prints. A column is one of history.csv, or two of them, A-B, the first less the second. Operations are last, first, min, max, absmax and mean, with two times between which
+they count, at TIME, and change A B C D, the mean between C and D less that between A and B.
 
 Numbers compare as `=`, rounded to the digits that are written (off by at most 0.6 of the last); `<`, `>`; `± 3 %`; or `is`, for a word. Rows with `night` in their last
 column are those whose runs take long: --night runs all, and keeps what it measured in docs/evidence/claims/results.csv. --write puts the
@@ -204,8 +204,9 @@ def from_json(path, pointer):
 
 
 def from_history(path, column, operation, *times):
+    of, _, less = column.partition("-")
     with path.open(encoding="utf-8", newline="") as file:
-        rows = [(float(row["time_s"]), float(row[column])) for row in csv.DictReader(file)]
+        rows = [(float(row["time_s"]), float(row[of]) - (float(row[less]) if less else 0.0)) for row in csv.DictReader(file)]
     times = [float(t) for t in times]
     if operation == "at":
         return min(rows, key=lambda row: abs(row[0] - times[0]))[1]
