@@ -3,7 +3,6 @@
 use std::path::{Path, PathBuf};
 
 use ndda::{Model, choose, examples, forecast};
-use ndda_io::diagnostic::SceneErrors;
 use ndda_io::read::{self, LoadedScene};
 
 use crate::args::SceneArgs;
@@ -22,8 +21,7 @@ pub fn file(args: &SceneArgs) -> PathBuf {
 /// # Errors
 /// The exit code, after the reason has been printed: what is wrong with the scene, or which examples there are.
 pub fn model(args: &SceneArgs, events: Events) -> Result<Model, u8> {
-    let loaded = read(args, events)?.map_err(|errors| events.refuse(&errors))?;
-    let folder = folder(args);
+    let (loaded, folder) = (read(args, events)?, folder(args));
     warn_of_slow_build(&loaded, &folder);
     Model::new(loaded, &folder).map_err(|errors| events.refuse(&errors))
 }
@@ -33,21 +31,20 @@ pub fn model(args: &SceneArgs, events: Events) -> Result<Model, u8> {
 /// # Errors
 /// As [`model`].
 pub fn scene(args: &SceneArgs, events: Events) -> Result<LoadedScene, u8> {
-    let complete = |loaded| choose::complete(loaded, &folder(args));
-    read(args, events)?.and_then(complete).map_err(|errors| events.refuse(&errors))
+    choose::complete(read(args, events)?, &folder(args)).map_err(|errors| events.refuse(&errors))
 }
 
 /// Folder that the files of a scene are in.
 fn folder(args: &SceneArgs) -> PathBuf {
-    let file = file(args);
-    file.parent().filter(|_| args.example.is_none()).unwrap_or(Path::new(".")).to_path_buf()
+    file(args).parent().filter(|_| args.example.is_none()).unwrap_or(Path::new(".")).to_path_buf()
 }
 
 /// The scene as it is written.
-fn read(args: &SceneArgs, events: Events) -> Result<Result<LoadedScene, SceneErrors>, u8> {
-    let (file, name) = (file(args), args.example.as_deref());
-    let Some(name) = name else { return Ok(read::load(&file, &args.overrides)) };
-    Ok(read::load_text(&file.display().to_string(), text(name, events)?, &args.overrides, None))
+fn read(args: &SceneArgs, events: Events) -> Result<LoadedScene, u8> {
+    let (file, refuse) = (file(args), |errors| events.refuse(&errors));
+    let Some(name) = &args.example else { return read::load(&file, &args.overrides).map_err(refuse) };
+    let (text, name) = (text(name, events)?, file.display().to_string());
+    read::load_text(&name, text, &args.overrides, None).map_err(refuse)
 }
 
 /// Prints the warnings of a scene, if it has any.

@@ -303,7 +303,8 @@ mod tests {
         for (text, word) in [
             ("time_s,acceleration_m_s2\n0,1\n0,2\n", "row 2"),
             ("time_s,acceleration_m_s2\n-1,1\n0,2\n", "row 1"),
-            ("time_s,acceleration_m_s2\n0,1\n", "two rows"),
+            ("time_s,acceleration_m_s2\n0,1\n", "one row of numbers"),
+            ("", "is empty"),
             ("time_s,acceleration_m_s2\n0,NaN\n1,1\n", "row 1"),
             ("time_s,acceleration_m_s2\n0,x\n", "line"),
             ("t,a\n0,1\n1,1\n", "time_s"),

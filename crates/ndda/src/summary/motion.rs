@@ -27,7 +27,7 @@ pub struct Motion {
     /// Whether it moves at the end.
     pub course: Course,
     /// Blocks that fall freely below all others at the end, so that nothing is left on which they could land.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[serde(default)]
     pub fallen_out: Vec<String>,
 }
 
