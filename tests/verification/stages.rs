@@ -163,7 +163,7 @@ fn slip_of_pushed_block(ramp: &str) -> (f64, Outcome) {
         )
     };
     let outcome = run(&format!(
-        "(title: \"pushed\", time: (step_s: 1e-5, end_s: 1e-5), gravity_m_s2: (0, 0, -{GRAVITY}), settle: (tolerance: 1e-7),
+        "(title: \"pushed\", time: (step_s: 1e-5, end_s: 1e-5), gravity_m_s2: (0, 0, -{GRAVITY}), settle: (tolerance: 1e-6),
           materials: [(name: \"rock\", young_pa: {YOUNG_PA:e}, poisson: 0, density_kg_m3: {DENSITY})],
           blocks: [{} {} {}],
           contact: Potential(penalty_pa: {PENALTY_PA:e}, potential: Smooth(reference_m: 1), friction: (friction_deg: 30, shear_penalty_pa_m: {shear_pa_m:e})),

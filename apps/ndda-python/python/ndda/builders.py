@@ -831,6 +831,10 @@ class Contact:
             Coefficient of restitution e of all contacts, from 0 to 1: speed at which two blocks part after a
             central impact over that at which they met, whatever the penalty and the step. Below 1, what rings
             comes to rest; 0 counts as 0.005. Needs `contact_at: Predicted`. Default: 1, undamped.
+        shear_restitution : float, optional
+            Coefficient of restitution along the face, from 0 to 1: speed that half an oscillation on a shear
+            spring leaves, over that before, while the spring sticks. Needs friction with
+            `shear_penalty_pa_m`. Default: springs are damped as contact is along its normal.
         material_pairs : list[MaterialPair], optional
             Friction between blocks of two materials, in place of `friction`; a later entry counts more.
             Default: none.
@@ -851,10 +855,11 @@ class Contact:
         potential: PotentialChoice | None = None
         friction: Friction | None = None
         restitution: float | None = None
+        shear_restitution: float | None = None
         material_pairs: list[MaterialPair] | None = None
         rock_joints: list[JointLaw] | None = None
         memory: MemoryChoice | None = None
-        _kinds: ClassVar[Mapping[str, str]] = {"penalty_pa": "num", "depth_ratio": "num", "potential": "Potential", "friction": "Friction", "restitution": "num", "material_pairs": "[MaterialPair]", "rock_joints": "[JointLaw]", "memory": "Memory"}
+        _kinds: ClassVar[Mapping[str, str]] = {"penalty_pa": "num", "depth_ratio": "num", "potential": "Potential", "friction": "Friction", "restitution": "num", "shear_restitution": "num", "material_pairs": "[MaterialPair]", "rock_joints": "[JointLaw]", "memory": "Memory"}
         _variant: ClassVar[str] = "Potential"
 
 
@@ -1969,6 +1974,9 @@ class JointLaw(Builder):
         Friction there. Default: none.
     restitution : float, optional
         Coefficient of restitution there. Default: that of the two materials.
+    shear_restitution : float, optional
+        Coefficient of restitution along the face there; needs `restitution` beside it. Default: springs are
+        damped as contact is along its normal.
 
     Examples
     --------
@@ -1979,7 +1987,8 @@ class JointLaw(Builder):
     joint: str
     friction: Friction | None = None
     restitution: float | None = None
-    _kinds: ClassVar[Mapping[str, str]] = {"joint": "str", "friction": "Friction", "restitution": "num"}
+    shear_restitution: float | None = None
+    _kinds: ClassVar[Mapping[str, str]] = {"joint": "str", "friction": "Friction", "restitution": "num", "shear_restitution": "num"}
 
 
 @dataclass(kw_only=True)
@@ -2070,6 +2079,9 @@ class MaterialPair(Builder):
         Friction there. Default: none.
     restitution : float, optional
         Coefficient of restitution there. Default: that of all contacts.
+    shear_restitution : float, optional
+        Coefficient of restitution along the face there. Default: that of all contacts, or of the normal where
+        `restitution` is given here.
 
     Examples
     --------
@@ -2080,7 +2092,8 @@ class MaterialPair(Builder):
     between: Sequence[str]
     friction: Friction | None = None
     restitution: float | None = None
-    _kinds: ClassVar[Mapping[str, str]] = {"between": "(str)", "friction": "Friction", "restitution": "num"}
+    shear_restitution: float | None = None
+    _kinds: ClassVar[Mapping[str, str]] = {"between": "(str)", "friction": "Friction", "restitution": "num", "shear_restitution": "num"}
 
 
 class Memory:

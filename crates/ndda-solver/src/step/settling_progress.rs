@@ -37,8 +37,6 @@ pub(super) struct Progress {
     load_j: f64,
     /// Largest kinetic energy on the way [J].
     highest_j: f64,
-    /// Kinetic energy of blocks that only rounding moves [J]: an oscillation that had no more is over.
-    rounding_j: f64,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -54,8 +52,7 @@ impl Progress {
             Damping::Local { factor } => Damper::Local(LocalDamping::new(factor)),
         };
         let load_j = simulation.blocks().ids().map(|block| simulation.load_energy_j(block)).sum();
-        let (oscillation, rounding_j) = (Oscillation::default(), rounding_j(simulation));
-        Self { damper, oscillation, moving_j: 0.0, load_j, highest_j: load_j, rounding_j }
+        Self { damper, oscillation: Oscillation::default(), moving_j: 0.0, load_j, highest_j: load_j }
     }
 
     /// A step; gives its report, and the speed that is left over the largest.
@@ -73,8 +70,9 @@ impl Progress {
                 if past_peak {
                     simulation.state.velocity.fill(Vec3::zeros());
                 }
-                let left_j =
-                    if past_peak && peak_j <= self.rounding_j { 0.0 } else { self.oscillation.left_j() };
+                // An oscillation that has no more energy than rounding gives it is over.
+                let is_over = past_peak && peak_j <= rounding_j(simulation);
+                let left_j = if is_over { 0.0 } else { self.oscillation.left_j() };
                 Ok((report, ratio(left_j, self.scale_j())))
             }
             Damper::Local(damping) => {
@@ -92,13 +90,13 @@ impl Progress {
     }
 }
 
-/// ½ Σ m (2 ε X/Δt)², X being the largest coordinate: each step rounds the place of a node, and the force that depends on it.
+/// ½ Σ m (2 ε X/Δt)² [J], X being the largest coordinate: each step rounds the place of a node, and the force that depends on it.
 fn rounding_j(simulation: &Simulation) -> f64 {
     let bounds = Aabb::around(simulation.state.position.iter());
     let speed_m_s = 2.0 * f64::EPSILON * bounds.min.abs().sup(&bounds.max.abs()).max() / simulation.part_s;
-    let moving = simulation.blocks().ids().map(|block| simulation.shape(block));
-    let moving = moving.filter(|shape| shape.kind != BodyKind::Fixed);
-    0.5 * speed_m_s * speed_m_s * moving.map(|shape| shape.operator.mass_kg).sum::<f64>()
+    let mass_kg = |block| simulation.inertia_factor(block) * simulation.shape(block).operator.mass_kg;
+    let moving = simulation.blocks().ids().filter(|&block| simulation.shape(block).kind != BodyKind::Fixed);
+    0.5 * speed_m_s * speed_m_s * moving.map(mass_kg).sum::<f64>()
 }
 
 /// Speed of an energy over that of another.
