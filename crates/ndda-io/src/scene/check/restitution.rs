@@ -49,7 +49,7 @@ impl Check<'_> {
                     "a joint has no restitution along its faces alone",
                     "give `restitution` beside it",
                 );
-            } else if !has_springs(friction) && !(any && path == "contact.shear_restitution") {
+            } else if !(has_springs(friction) || (any && path == "contact.shear_restitution")) {
                 let help = "give this friction `shear_penalty_pa_m`, or leave out shear_restitution: friction on velocities has no rebound";
                 self.misfit(path, "there are no shear springs that could rebound", help);
             }
