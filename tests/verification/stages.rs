@@ -194,7 +194,7 @@ fn a_damped_ramp_does_not_let_a_joint_slip_that_a_slow_one_would_hold() {
         "stages",
         "balance of energy across a damped ramp, over the energy that the removal released",
         at(history, "balance_j", end_s).abs() / (1.5 * WEIGHT_N * 0.5 * WEIGHT_N / (2.0 * PENALTY_PA)),
-        // What is not friction, load or motion is booked as damping, so that rounding is left.
+        // All work but that of friction, loads and motions is booked as damping: only rounding is left.
         AtMost(1e-9),
     );
     assert_eq!(outcome.summary.label.word, LabelWord::Accurate, "{:?}", outcome.summary.label.reasons);

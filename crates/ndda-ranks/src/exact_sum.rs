@@ -93,7 +93,7 @@ impl ExactSum {
             return;
         }
         let fraction = bits & ((1 << FRACTION_BITS) - 1);
-        // Those below the smallest normal number have its exponent, and no leading one.
+        // Subnormal numbers have the exponent of the smallest normal one, without its implicit leading bit.
         let (whole, place) = match exponent {
             0 => (fraction, 0),
             _ => (fraction | 1 << FRACTION_BITS, exponent as u32 - 1),

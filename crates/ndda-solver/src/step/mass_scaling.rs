@@ -19,10 +19,8 @@ use serde::{Deserialize, Serialize};
 use crate::bodies::kind::BodyKind;
 use crate::step::Simulation;
 
-/// Part of the largest stable h that blocks are brought to.
+/// Part of the largest stable h that blocks are brought to; where steps are controlled, of the h up to which control keeps them whole.
 const OF_BOUND: f64 = 0.9;
-/// The same where steps are controlled, over the part of the bound that they may use.
-const OF_CONTROLLED: f64 = 0.9;
 /// Least inertia of a block over what contact all around it would ask for.
 const LEAST: f64 = 0.05;
 /// Inertia after a step over that before it, at least.
@@ -96,9 +94,8 @@ impl Simulation {
 
     /// Δt² over the square of the h that blocks are brought to; none where contact is solved for.
     fn scale_of_rates_s2(&self) -> Option<f64> {
-        let of_bound =
-            self.control.as_ref().map_or(OF_BOUND, |control| OF_CONTROLLED * control.settings.safety);
-        let h = of_bound.min(OF_BOUND) * self.resolved_h()?;
+        let whole = self.control.as_ref().map_or(1.0, |control| control.settings.safety.min(1.0));
+        let h = OF_BOUND * whole * self.resolved_h()?;
         Some((self.problem.base_step_s / h).powi(2))
     }
 

@@ -39,7 +39,7 @@ pub(super) fn restitution_table(
     let mut table = RestitutionTable::between(materials, scene.materials.len(), everywhere);
     for pair in pairs {
         if pair.restitution.is_some() || pair.shear_restitution.is_some() {
-            // One that is given here has its own dashpots, unless these are given, too.
+            // A restitution that is given for a pair damps its shear springs, too, unless shear_restitution is given beside it.
             let shear = pair.shear_restitution.or(everywhere.shear.filter(|_| pair.restitution.is_none()));
             let restitution = Restitution { normal: pair.restitution.unwrap_or(everywhere.normal), shear };
             table.set((index(&pair.between.0), index(&pair.between.1)), restitution);

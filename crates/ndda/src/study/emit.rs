@@ -64,7 +64,7 @@ pub fn script(plan: &Plan, cases: &[Case], emit: Emit) -> String {
     }
 }
 
-/// What Slurm is to give each case where several ranks take it, and how they are started there.
+/// Lines of the script that ask Slurm for the ranks and threads of each case, where several ranks run it.
 fn tasks(plan: &Plan) -> String {
     if plan.ranks == 1 {
         return String::new();

@@ -11,7 +11,7 @@ use super::error::StudyError;
 use super::runner::CaseRun;
 use crate::forecast::memory;
 
-/// What starts the ranks of a run.
+/// The program that starts the ranks of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Starter {
     /// `srun`, within a job of Slurm.

@@ -1,7 +1,8 @@
 //! Dashpots beside the shear springs of damped contacts.
 //!
 //! A spring of stiffness K between two blocks of reduced mass m has a dashpot α √(m K): the same α as along the normal, so that blocks that swing on their
-//! springs come to rest as those that bounce; a coefficient of restitution along the face sets another one. Spring and dashpot together carry no more than the friction law allows, and the work is that of friction.
+//! springs come to rest as those that bounce. A coefficient of restitution along the face takes the place of α where one is given. Spring and dashpot together
+//! carry no more than the friction law allows, and their work counts as work of friction.
 //!
 //! Where blocks deform, the dashpots on a node of mass m, or on a block that moves by an affine map, take at most c = m/2Δt: with the velocity at the start
 //! of the step, more than 2 m/Δt would be unstable. The motion of blocks as a whole is solved for (`dashpot.rs`), and has no limit.

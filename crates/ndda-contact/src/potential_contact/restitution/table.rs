@@ -6,12 +6,12 @@ use ndda_mesh::{BlockId, BlockSet, TriangleId};
 
 use crate::restitution::law::{factor_of, shear_factor_of};
 
-/// Damping factors along the normal and along the face, each beside the root of mass and stiffness.
+/// Damping factors c/√(m K), along the normal and along the face.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Factors {
-    /// α of the normal.
+    /// α along the normal.
     pub normal: f64,
-    /// c/√(m K) of the dashpots beside shear springs.
+    /// That of the dashpots beside shear springs.
     pub shear: f64,
 }
 
@@ -20,7 +20,7 @@ pub(super) struct Factors {
 pub struct Restitution {
     /// Speed at which two blocks part after a central impact, over that at which they met.
     pub normal: f64,
-    /// Speed along the face after half an oscillation on a shear spring, over that before; none for the dashpots of the normal.
+    /// Speed along the face after half an oscillation on a shear spring, over that before; if none, shear springs are damped by the α of the normal.
     pub shear: Option<f64>,
 }
 

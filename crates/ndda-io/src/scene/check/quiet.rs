@@ -129,7 +129,7 @@ impl Check<'_> {
         }
     }
 
-    /// What the file of a record says, if it is there.
+    /// Refuses the file of a record that is there, but cannot be read as a record.
     pub(super) fn table_of_record(
         &mut self,
         path: String,
