@@ -8,13 +8,14 @@ use crate::model::Bond;
 /// Identifies a facet's contact: the triangle, the other block and, with memory per element, the element.
 pub(crate) type Key = (TriangleId, BlockId, Option<TetId>);
 
-/// The bonds of a facet; all are in the order of their keys.
+/// The bonds of a facet; all are in the order of their keys, which begin with the triangle.
 fn of_facet<'a>(
     bonds: &'a [Bond],
     (blocks, memory, wanted): (&'a BlockSet, Memory, Key),
 ) -> impl Iterator<Item = &'a Bond> + Clone {
-    let first = bonds.partition_point(|bond| key(blocks, memory, bond) < wanted);
-    bonds[first..].iter().take_while(move |bond| key(blocks, memory, bond) == wanted)
+    let first = bonds.partition_point(|bond| bond.facet < wanted.0);
+    let of_triangle = bonds[first..].iter().take_while(move |bond| bond.facet == wanted.0);
+    of_triangle.filter(move |bond| key(blocks, memory, bond) == wanted)
 }
 
 /// Part of a facet's contact that no bond holds any more; none where there are no bonds.

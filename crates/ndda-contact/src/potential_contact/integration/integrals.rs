@@ -16,6 +16,7 @@ use crate::integration::affine_target::{EvaluateHalfSpaces, PushRegions};
 use crate::integration::chunk_parts::{Chunk, Results, Triangle, copy_into};
 use crate::integration::clip::Outline;
 use crate::integration::function_moments::{Placed, add_function};
+use crate::integration::joint_faces::two_faces_separate;
 use crate::integration::overlap_pair::{ActiveFacet, FacetMoments, OverlapPair};
 use crate::integration::pair_moments::{PairMoments, PsiRange};
 use crate::integration::pair_report::OverlapReport;
@@ -23,6 +24,7 @@ use crate::integration::queue::RegionQueue;
 use crate::integration::region::{Pieces, Region};
 use crate::integration::scene::{Scene, are_on_one_side, lies_in_a_plane_of};
 use crate::integration::shared_chunks::SharedChunks;
+use crate::integration::tet_frame::{by_face, some_face_separates};
 use crate::potential::contact_potential::PotentialField;
 
 /// Pairs of a chunk: one task for a thread. Where there are many, chunks are larger, since each has memory of its own, most of which is not used.
@@ -184,10 +186,14 @@ impl Scratch {
         for tet in facet.tets() {
             let slot = scene.candidates.slot_of(tet).wrapping_add(shift);
             let frame = scene.frames.at(slot);
-            let in_plane = || Some(frame.lambda(corners)).filter(|l| lies_in_a_plane_of(frame, l, normal));
-            let inside = frame.lambda_inside(corners);
-            let Some(lambda) = inside.or_else(|| if pieces { in_plane() } else { None }) else { continue };
-            if scene.tet_is_on_one_side(tet, &corners[0], normal) {
+            let [x, y, z] =
+                [frame.lambda_at(&corners[0]), frame.lambda_at(&corners[1]), frame.lambda_at(&corners[2])];
+            let at = [&x, &y, &z];
+            let (lambda, is_apart) = (by_face(at), some_face_separates(at));
+            if (is_apart && !(pieces && lies_in_a_plane_of(frame, &lambda, normal)))
+                || two_faces_separate(at)
+                || scene.tet_is_on_one_side(tet, &corners[0], normal)
+            {
                 continue;
             }
             let at = self.seen.len() as u32;

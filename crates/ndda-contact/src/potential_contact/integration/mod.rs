@@ -8,6 +8,7 @@ pub(crate) mod double_double;
 pub(crate) mod frames;
 pub(crate) mod function_moments;
 pub(crate) mod integrals;
+pub(crate) mod joint_faces;
 pub(crate) mod kernel;
 pub(crate) mod linear;
 pub(crate) mod overlap_pair;

@@ -12,7 +12,7 @@ use crate::integration::region::{Cut, Pieces, Region, element_cuts, element_outs
 const FEW_CORNERS: usize = 4;
 
 /// Regions with this many cuts or more wait together.
-const MANY_CUTS: usize = 5;
+const MANY_CUTS: usize = 8;
 
 /// Batches of regions on triangles, as many for those on contactors of up to four corners, and one for all others.
 const BATCHES: usize = 2 * (MANY_CUTS + 1) + 1;
