@@ -68,6 +68,20 @@ impl Motion {
         times_s.fold(0.0, |most, time_s| most.max(off(self.velocity(time_s))))
     }
 
+    /// The largest acceleration of its records, of several that of the largest [m/s²]; zero for rows of displacements, which have none.
+    pub fn peak_acceleration(&self) -> Vec3 {
+        match self {
+            Self::Rows(_) => Vec3::zeros(),
+            Self::Record(Record { direction, rows }) => {
+                rows.iter().fold(0.0, |most, row| f64::max(most, row[1].abs())) * direction
+            }
+            Self::Sum(parts) => {
+                let larger = |a: Vec3, b: Vec3| if b.norm_squared() > a.norm_squared() { b } else { a };
+                parts.iter().map(Self::peak_acceleration).fold(Vec3::zeros(), larger)
+            }
+        }
+    }
+
     /// Times of the first and the last row [s], and how many rows there are; none without rows.
     pub fn extent(&self) -> Option<(f64, f64, usize)> {
         let of = |first: Option<f64>, last: Option<f64>, rows| Some((first?, last?, rows));

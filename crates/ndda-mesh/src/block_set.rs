@@ -149,6 +149,7 @@ impl BlockSet {
     }
 
     /// Corner positions of a boundary triangle [m], `position` being per node.
+    #[inline]
     pub fn triangle_corners(&self, triangle: TriangleId, position: &[Vec3]) -> [Vec3; 3] {
         self.triangles[triangle.index()].map(|n| position[n.index()])
     }

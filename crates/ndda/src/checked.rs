@@ -12,6 +12,7 @@ use crate::build::RockReport;
 use crate::forecast::cost::Guess;
 use crate::forecast::step::Advice;
 use crate::numbers::counted;
+use crate::rocking::Rocking;
 
 /// Findings in a scene without errors.
 #[derive(Serialize)]
@@ -43,6 +44,9 @@ pub struct Checked<'a> {
     /// What its records are, and what is done with them.
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     pub records: &'a [String],
+    /// From which acceleration on a block rocks on a shaken base, and what penetration takes of it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rocking: Option<Rocking>,
     /// What rock was cut into.
     pub rock: &'a [RockReport],
     /// Where bolts are bonded.
@@ -67,6 +71,8 @@ impl fmt::Display for Checked<'_> {
         self.rock.iter().try_for_each(|rock| write!(f, "\n{rock}"))?;
         write!(f, "{}", self.bolts)?;
         self.records.iter().try_for_each(|record| write!(f, "\nrecord {record}"))?;
+        // Too large a part has been warned of.
+        self.rocking.iter().filter(|of| !of.is_doubtful()).try_for_each(|of| write!(f, "\n{of}"))?;
         self.chosen.iter().try_for_each(|chosen| write!(f, "\n{chosen}"))?;
         write!(f, "\n{}", self.guess)
     }

@@ -7,11 +7,10 @@
 use std::fmt;
 
 use ndda_io::scene::{Contact, Force, Potential, Scene, matches};
-use ndda_mesh::geometry::{Aabb, triangle_area_vector};
-use ndda_mesh::planar::{clipped, hull_of_sorted, turn};
 use ndda_mesh::{BlockId, Vec3};
 use ndda_solver::{BodyKind, Simulation};
 
+use crate::base_of_block::{Base, Pull};
 use crate::build;
 use crate::numbers::length;
 
@@ -24,15 +23,8 @@ const FALLS: f64 = 4.0 / 27.0;
 const ADVISED: f64 = 0.02;
 /// Most free blocks of a scene that are looked at: each is compared with all others.
 const MOST_BLOCKS: usize = 100;
-/// Part of the depth of a base below which a distance from its edge is rounding.
-const AT_THE_EDGE: f64 = 1e-9;
 /// Factor on the penalty beyond which none is advised.
 const MOST_RAISED: f64 = 1e6;
-/// Cosine and part of a block's size by which faces differ that lie on each other.
-const SAME_DIRECTION: f64 = 1.0 - 1e-9;
-const SAME_PLANE: f64 = 1e-3;
-/// Cosine of the steepest base, against gravity.
-const STEEPEST: f64 = 0.5;
 
 /// A block whose weight acts near the edge of its base.
 #[derive(Clone, Debug, PartialEq)]
@@ -121,9 +113,6 @@ pub fn worst(scene: &Scene, simulation: &Simulation) -> Option<Lean> {
     free.into_iter().filter_map(lean).max_by(|a, b| a.m.total_cmp(&b.m))
 }
 
-/// Where a force acts [m], and the force [N].
-type Pull = (Vec3, Vec3);
-
 /// The weight and the forces of the scene on a block, at the start and at each row of their tables.
 fn pulls(scene: &Scene, simulation: &Simulation, block: BlockId) -> Vec<Vec<Pull>> {
     let blocks = simulation.blocks();
@@ -142,132 +131,6 @@ fn pulls(scene: &Scene, simulation: &Simulation, block: BlockId) -> Vec<Vec<Pull
         std::iter::once(weight).chain(forces.iter().map(pull)).collect()
     };
     std::iter::once(0.0).chain(rows).map(at).collect()
-}
-
-/// Where a block rests on others.
-struct Base {
-    /// Corners of what it rests on, in two axes of the base, from below the mass centre.
-    points: Vec<[f64; 2]>,
-    origin: Vec3,
-    /// The axes, and the normal out of the block.
-    axes: [Vec3; 3],
-}
-
-/// The resultant force on a base near an edge.
-struct Pressed {
-    normal_n: f64,
-    /// d and w [m].
-    inside_m: f64,
-    width_m: f64,
-    /// How far the line of the force moves towards the edge for a tilt of one radian [m].
-    arm_m: f64,
-}
-
-/// Triangles of a block at the start, with their normals.
-fn faces(simulation: &Simulation, block: BlockId) -> impl Iterator<Item = ([Vec3; 3], Vec3)> {
-    let blocks = simulation.blocks();
-    let position = simulation.start_position();
-    blocks.triangles_of(block).map(move |triangle| {
-        let corners = blocks.triangles[triangle].map(|node| position[node.index()]);
-        (corners, triangle_area_vector(&corners))
-    })
-}
-
-impl Base {
-    /// The lowest face of a block, where others touch that one only, or its top.
-    fn of(simulation: &Simulation, block: BlockId, gravity: &Vec3) -> Option<Self> {
-        let down = gravity.normalize();
-        let nodes = &simulation.start_position()[simulation.blocks().nodes_of(block)];
-        let bounds = Aabb::around(nodes);
-        let near_m = SAME_PLANE * bounds.diagonal();
-        let bounds = bounds.inflated(near_m);
-        let own: Vec<([Vec3; 3], Vec3)> = faces(simulation, block).collect();
-        let (first, normal) = own
-            .iter()
-            .map(|(corners, area)| (corners[0], area.normalize()))
-            .max_by(|a, b| a.1.dot(&down).total_cmp(&b.1.dot(&down)))?;
-        let cosine = normal.dot(&down);
-        let centre = simulation.shape(block).operator.center(nodes);
-        let height_m = (first - centre).dot(&normal);
-        if cosine < STEEPEST || height_m <= 0.0 {
-            return None;
-        }
-        let origin = centre + height_m * normal;
-        let across = normal.cross(&Vec3::ith(normal.iamin(), 1.0)).normalize();
-        let axes = [across, normal.cross(&across), normal];
-        let flat = |x: &Vec3| [0, 1].map(|k| axes[k].dot(&(x - origin)));
-        let is_on = |plane: &([Vec3; 3], Vec3), other: &([Vec3; 3], Vec3)| {
-            let normal = plane.1.normalize();
-            let faces = normal.dot(&other.1.normalize()) < -SAME_DIRECTION;
-            faces && (other.0[0] - plane.0[0]).dot(&normal).abs() < near_m
-        };
-        let is_base = |plane: &([Vec3; 3], Vec3)| plane.1.normalize().dot(&normal) > SAME_DIRECTION;
-        let outline = hull(
-            own.iter()
-                .filter(|plane| is_base(plane))
-                .flat_map(|(corners, _)| corners.iter().map(flat))
-                .collect(),
-        );
-        let mut points = Vec::new();
-        for other in simulation.blocks().ids().filter(|other| *other != block) {
-            for face in faces(simulation, other).filter(|(corners, _)| Aabb::around(corners).touches(&bounds))
-            {
-                let Some(plane) = own.iter().find(|plane| is_on(plane, &face)) else { continue };
-                if is_base(plane) {
-                    points.extend(clipped(face.0.map(|x| flat(&x)).to_vec(), &outline));
-                } else if plane.1.normalize().dot(&normal) > -STEEPEST {
-                    return None;
-                }
-            }
-        }
-        Some(Self { points: hull(points), origin, axes })
-    }
-
-    /// The force on the base and the distance of its line from the nearest edge; none where they pull, where their line meets it outside, or where the strip at the edge is all of it.
-    ///
-    /// With heights h_i, places s_i, normal parts N_i and tangential parts T_i of the forces, the line meets the base at Σ (N_i s_i + h_i T_i)/N.
-    /// A tilt of one radian about the edge with the outward direction e there moves that along e by Σ (N_i h_i − (s_i·e)(T_i·e))/N.
-    fn pressed(&self, pulls: &[Pull]) -> Option<Pressed> {
-        let [one, two, normal] = &self.axes;
-        let flat = |v: &Vec3| Vec3::new(one.dot(v), two.dot(v), 0.0);
-        let normal_n: f64 = pulls.iter().map(|(_, f)| f.dot(normal)).sum();
-        let parts = || {
-            pulls.iter().map(|(x, f)| {
-                (flat(&(x - self.origin)), (self.origin - x).dot(normal), f.dot(normal), flat(f))
-            })
-        };
-        let foot = parts().map(|(s, h, n, t)| n * s + h * t).sum::<Vec3>() / normal_n;
-        let (inside_m, along, width_m) = self.inside(&foot)?;
-        let out = Vec3::new(along.y, -along.x, 0.0);
-        let arm = |(s, h, n, t): (Vec3, f64, f64, Vec3)| n * h - (s - foot).dot(&out) * t.dot(&out);
-        let arm_m = parts().map(arm).sum::<f64>() / normal_n;
-        (normal_n > 0.0 && arm_m > 0.0).then_some(Pressed { normal_n, inside_m, width_m, arm_m })
-    }
-
-    /// Distance of a foot from the nearest edge, the direction of that and the width of the base along it [m]; none where it lies outside, or the strip at the edge
-    /// is all of the base.
-    fn inside(&self, foot: &Vec3) -> Option<(f64, Vec3, f64)> {
-        let corners = &self.points;
-        let edges = (0..corners.len()).map(|k| (corners[k], corners[(k + 1) % corners.len()]));
-        let distance = |(a, b): ([f64; 2], [f64; 2])| {
-            let along = Vec3::new(b[0] - a[0], b[1] - a[1], 0.0);
-            (turn(&a, &b, &[foot.x, foot.y]) / along.norm(), along.normalize())
-        };
-        let (inside_m, along) = edges.map(distance).min_by(|a, b| a.0.total_cmp(&b.0))?;
-        let extent = |axis: Vec3| {
-            let places = corners.iter().map(|x| axis.x * x[0] + axis.y * x[1]);
-            places.clone().fold(f64::MIN, f64::max) - places.fold(f64::MAX, f64::min)
-        };
-        let (width_m, across_m) = (extent(along), extent(Vec3::new(-along.y, along.x, 0.0)));
-        (corners.len() > 2 && inside_m > AT_THE_EDGE * across_m && 3.0 * inside_m < across_m)
-            .then_some((inside_m, along, width_m))
-    }
-}
-
-/// The convex hull, counter-clockwise.
-fn hull(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
-    points.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
-    hull_of_sorted(&points, |at| *at, 0.0)
 }
 
 #[cfg(test)]

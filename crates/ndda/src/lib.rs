@@ -48,6 +48,7 @@
 //! | `picture` | pictures as SVG and PNG (features `plots`, `png`) |
 //! | `view3d` | pictures and animations of blocks in 3D (features `plots`, `png`) |
 
+mod base_of_block;
 pub mod body_counts;
 pub mod bolt_report;
 pub mod build;
@@ -84,6 +85,7 @@ pub mod plot;
 #[cfg(feature = "report")]
 pub mod report;
 pub mod rockfall;
+pub mod rocking;
 pub mod run;
 pub mod safety;
 pub mod shaking;

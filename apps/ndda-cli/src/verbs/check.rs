@@ -6,7 +6,7 @@ use ndda::body_counts::BodyCounts;
 use ndda::bolt_report::BoltReports;
 use ndda::checked::Checked;
 use ndda::forecast::{cost, doubts, step};
-use ndda::{build, choose};
+use ndda::{build, choose, rocking};
 
 use crate::args::CheckArgs;
 use crate::terminal::console::say;
@@ -37,7 +37,6 @@ pub fn check(args: &CheckArgs) -> u8 {
             return events.fail(exit::STOPPED, &format!("the run would stop in its first steps: {error}"));
         }
     };
-    let records = build::records(&loaded.scene, file.parent().unwrap_or(Path::new("")));
     let (simulation, blocks) = (&model.simulation, model.simulation.blocks());
     let checked = Checked {
         exit_code: exit::DONE,
@@ -51,7 +50,8 @@ pub fn check(args: &CheckArgs) -> u8 {
         advised_step_s: advice.as_ref().map(|advice| advice.step_s),
         contact_stability: advice.as_ref(),
         chosen: &loaded.chosen,
-        records: &records,
+        records: &build::records(&loaded.scene, file.parent().unwrap_or(Path::new(""))),
+        rocking: rocking::worst(&loaded.scene, simulation),
         rock: &model.rock,
         bolts: BoltReports::new(simulation),
         guess,

@@ -250,7 +250,7 @@ pub(super) fn place_forces(
     state.resize(touching.len() * state_len, 0.0);
     let place = |force: &mut FacetForce, t: usize, state: &mut [f64]| {
         let (overlaps, sums) = (integrals.overlaps_of(&touching[t]), integrals.sums_of(&touching[t]));
-        let pushes = (penalty_of_facet[t], dashpot_n.get(t));
+        let pushes = (t, penalty_of_facet[t], dashpot_n.get(t));
         *force = scene.force(&touching[t], overlaps, sums, pushes, state);
     };
     if state_len > 0 {

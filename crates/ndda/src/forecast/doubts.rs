@@ -13,6 +13,7 @@ use crate::bolt_report::BoltReports;
 use crate::build;
 use crate::choose;
 use crate::lean;
+use crate::rocking::{self, Rocking};
 use crate::waves;
 
 /// Penalties over Young's modulus, for a potential of 1 m, outside of which contact is deep or requires short steps.
@@ -47,6 +48,8 @@ pub fn doubts(scene: &Scene, simulation: &Simulation, advice: Option<&Advice>, f
         );
     }
     doubts.extend(lean::worst(scene, simulation).map(|lean| lean.to_string()));
+    let rocking = rocking::worst(scene, simulation).filter(Rocking::is_doubtful);
+    doubts.extend(rocking.map(|rocking| rocking.to_string()));
     // The depth of contact at rest says more than the ratio of two stiffnesses.
     doubts.extend(
         depth(scene, simulation)

@@ -11,6 +11,7 @@ use crate::judge::reference;
 use crate::judge::verdict;
 use crate::lean;
 use crate::machine;
+use crate::rocking::{self, Rocking};
 use crate::run::recorder::Recorder;
 use crate::summary::{
     BlockEnd, BoltEnd, Counts, Invariants, Judgement, LabelWord, MonitorEnd, Named, ReferenceError, Status,
@@ -110,7 +111,7 @@ pub fn summarise(simulation: &Simulation, recorder: &Recorder, ending: Ending) -
     }
 }
 
-/// What makes a run inaccurate from its start on: blocks that lean over an edge, and contact that is deep at rest beside the blocks, which may be far smaller
+/// What makes a run inaccurate from its start on: blocks that lean over an edge, blocks that rock too early on a shaken base, and contact that is deep at rest beside the blocks, which may be far smaller
 /// than the elements over which penetration is judged.
 fn at_the_start(scene: &Scene, simulation: &Simulation) -> Vec<Finding> {
     let lean = lean::worst(scene, simulation).map(|lean| Finding {
@@ -119,13 +120,19 @@ fn at_the_start(scene: &Scene, simulation: &Simulation) -> Vec<Finding> {
         limit: lean::MOST_MOVED,
         reason: lean.to_string(),
     });
+    let rocking = rocking::worst(scene, simulation).filter(Rocking::is_doubtful).map(|rocking| Finding {
+        what: "part of the acceleration that makes a block rock, taken by penetration",
+        value: rocking.lost(),
+        limit: rocking::MOST_LOST,
+        reason: rocking.to_string(),
+    });
     let deep = doubts::depth(scene, simulation).map(|(overlap, reason)| Finding {
         what: "overlap at rest / block size",
         value: overlap,
         limit: doubts::DEEP,
         reason,
     });
-    lean.into_iter().chain(deep).collect()
+    lean.into_iter().chain(rocking).chain(deep).collect()
 }
 
 fn counts(simulation: &Simulation) -> Counts {

@@ -1,9 +1,9 @@
 //! One facet: normal force, slip and friction.
 
 use ndda_mesh::geometry::triangle_area_vector;
-use ndda_mesh::{BlockId, BlockSet, TetId, TriangleId, Vec3};
+use ndda_mesh::{BlockSet, TetId, Vec3};
 
-use crate::friction::bonds_of_facet;
+use crate::friction::bonds_of_facet::{self, Key};
 use crate::friction::law::{FacetSlip, FrictionLaw, ShearMemory, capped, facet_basis, length};
 use crate::friction::law_table::{FrictionLawTable, Memory};
 use crate::integration::overlap_pair::{ActiveFacet, FacetMoments, OverlapPair};
@@ -11,6 +11,9 @@ use crate::model::{ContactHistory, ContactInput, FacetMemory, SpringSlip};
 
 /// Friction below this part of what it may be holds like a spring.
 pub(crate) const STICKS: f64 = 1.0 - 1e-9;
+
+/// Places on either side at which a facet is looked for first.
+const NEAR: usize = 8;
 
 /// The forces of one facet per unit of ∫ φ N dA, and what it remembers.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -54,6 +57,19 @@ pub(crate) struct FacetScene<'a> {
     pub elastic_pa: f64,
 }
 
+/// Place of a facet among those remembered, which are in the order of their keys: mostly about where it is among those that touch now.
+fn place_of(facets: &[FacetMemory], wanted: &Key, expected: usize) -> Option<usize> {
+    let key = |memory: &FacetMemory| (memory.facet, memory.target, memory.element);
+    let start = expected.saturating_sub(NEAR).min(facets.len());
+    let near = &facets[start..(start + 2 * NEAR).min(facets.len())];
+    match near {
+        [first, .., last] if key(first) <= *wanted && *wanted <= key(last) => {
+            near.binary_search_by_key(wanted, key).ok().map(|place| start + place)
+        }
+        _ => facets.binary_search_by_key(wanted, key).ok(),
+    }
+}
+
 impl FacetForce {
     /// The shares of nodes in friction, out of theirs in ∫ φ dA and in ∫ |∂φ/∂n| dA.
     pub(crate) fn friction_shares<'a, const N: usize>(
@@ -78,7 +94,7 @@ impl FacetScene<'_> {
         touch: &ActiveFacet,
         hits: &[OverlapPair],
         sums: &FacetMoments,
-        (penalty_pa, dashpot_n): (f64, Option<&Vec3>),
+        (number, penalty_pa, dashpot_n): (usize, f64, Option<&Vec3>),
         state: &mut [f64],
     ) -> FacetForce {
         let mut force = FacetForce { facet: touch.facet, ..FacetForce::default() };
@@ -94,8 +110,9 @@ impl FacetScene<'_> {
                 joints,
                 touch,
                 (hits, sums),
-                (penalty_pa, dashpot_n, &normal),
+                (penalty_pa, dashpot_n, (&corners, &normal)),
                 (&mut force, state),
+                number,
             );
         }
         force
@@ -108,16 +125,16 @@ impl FacetScene<'_> {
         joints: &FrictionLawTable,
         touch: &ActiveFacet,
         (hits, sums): (&[OverlapPair], &FacetMoments),
-        (penalty_pa, dashpot_n, normal): (f64, Option<&Vec3>, &Vec3),
+        (penalty_pa, dashpot_n, (corners, normal)): (f64, Option<&Vec3>, (&[Vec3; 3], &Vec3)),
         (force, state): (&mut FacetForce, &mut [f64]),
+        number: usize,
     ) {
         let law = joints.law(self.input.blocks, touch.triangle, touch.target);
         let Some(law) = law.filter(|law| !law.acts_on_faces()) else { return };
-        let corners = self.input.blocks.triangle_corners(touch.triangle, self.input.position);
-        let basis = facet_basis(&corners, normal);
+        let basis = facet_basis(corners, normal);
         let state = &mut state[..law.state_len()];
         let key = (touch.triangle, touch.target, self.element_of(hits));
-        let (mut memory, last_area_m2) = self.remembered(key, sums, (law, state));
+        let (mut memory, last_area_m2) = self.remembered((key, number), sums, (law, state));
         let bonds = &self.history.bonds;
         let bonded = !bonds.is_empty();
         let broken = bonded
@@ -131,7 +148,7 @@ impl FacetScene<'_> {
         let mut slip = self.slip(touch, (hits, sums), &basis, penalty_pa);
         slip.mean_area_m2 = 0.5 * (last_area_m2 + sums.area);
         if broken.is_some() && law.fracture().is_none() {
-            let facet_m2 = triangle_area_vector(&corners).norm();
+            let facet_m2 = triangle_area_vector(corners).norm();
             let touches = (&sums.weights, sums.area, facet_m2);
             let [pressure, area_m2] =
                 bonds_of_facet::left_to_friction(bonds, (self.input.blocks, joints.memory, key), touches);
@@ -190,19 +207,18 @@ impl FacetScene<'_> {
     /// History of the facet on its target, and the area of the last step; none when they did not touch before.
     fn remembered<'a>(
         &self,
-        wanted: (TriangleId, BlockId, Option<TetId>),
+        (wanted, number): (Key, usize),
         sums: &FacetMoments,
         (law, state): (&dyn FrictionLaw, &'a mut [f64]),
     ) -> (ShearMemory<'a>, f64) {
-        let key = |memory: &FacetMemory| (memory.facet, memory.target, memory.element);
-        match self.history.facets.binary_search_by_key(&wanted, key) {
-            Ok(place) => {
+        match place_of(&self.history.facets, &wanted, number) {
+            Some(place) => {
                 let FacetMemory { shear_n, broken, area_m2, .. } = self.history.facets[place];
                 state.copy_from_slice(&self.history.state_of(place)[..state.len()]);
                 (ShearMemory { shear_n, broken, state }, area_m2)
             }
             // Facets that touch from the start count as having touched before.
-            Err(_) => {
+            None => {
                 law.begin(state);
                 let area_m2 = if self.history.begun { 0.0 } else { sums.area };
                 (ShearMemory { state, ..ShearMemory::default() }, area_m2)

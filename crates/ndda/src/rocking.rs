@@ -1,0 +1,317 @@
+//! From which acceleration of a shaken base on blocks rock, and by how much contact that gives way lowers it.
+//!
+//! Under a level acceleration a, weights and inertia of a block and of what rests on it meet the base at a foot that moves towards an edge as a grows. A rigid edge
+//! holds them until the foot is there. Contact of penalty k_n gives way: where the base tilts by θ about a line s₀, pressures are 2 k_n θ (s − s₀)/L₀ beyond it,
+//! so that N = (2 k_n θ/L₀) ∫ (s − s₀) dA, and the foot is at ∫ s (s − s₀) dA/∫ (s − s₀) dA. The tilt moves the forces on by θ times their arm, so that
+//! they stand while some s₀ has foot(s₀) ≥ foot(a) + θ(s₀) arm. On a rectangle of half depth b and width w, and masses h high, that is up to
+//! a = g (b − 3 d/2)/h, d³ = 2 N h L₀/(9 k_n w), instead of g b/h.
+
+use std::fmt;
+
+use ndda_io::scene::{Contact, Potential, Scene};
+use ndda_mesh::{BlockId, Vec3};
+use ndda_solver::{BodyKind, Simulation};
+use serde::Serialize;
+
+use crate::base_of_block::Base;
+use crate::numbers::counted;
+
+/// Part of the acceleration that penetration may take.
+pub const MOST_LOST: f64 = 0.06;
+/// Part that is left to it with the penalty that is advised.
+const ADVISED: f64 = 0.03;
+/// Most free blocks of a scene that are looked at: each is compared with all others.
+const MOST_BLOCKS: usize = 100;
+/// Places of s₀, from a millionth of the depth of the base inside its edge to four depths.
+const PLACES: i32 = 400;
+/// Decades by which the penalty may be raised.
+const MOST_DECADES: f64 = 8.0;
+/// Accelerations beyond so many g are not looked for.
+const MOST_G: f64 = 100.0;
+
+/// From which acceleration on a block rocks, with what rests on it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Rocking {
+    /// Name of the block.
+    pub block: String,
+    /// Blocks that rest on it.
+    pub blocks_on_it: usize,
+    /// Largest acceleration of the base across gravity [m/s²].
+    pub peak_m_s2: f64,
+    /// Acceleration from which on it rocks [m/s²].
+    pub rocks_at_m_s2: f64,
+    /// The same on an edge that does not give way [m/s²].
+    pub rigid_m_s2: f64,
+    /// Penalty with which penetration takes half of what it may, that of the scene where it takes no more [Pa].
+    pub advised_penalty_pa: f64,
+}
+
+impl Rocking {
+    /// Part of the acceleration that penetration takes.
+    pub fn lost(&self) -> f64 {
+        1.0 - self.rocks_at_m_s2 / self.rigid_m_s2
+    }
+
+    /// Whether the base shakes it enough for penetration to decide, by too much.
+    pub fn is_doubtful(&self) -> bool {
+        self.peak_m_s2 > self.rocks_at_m_s2 && self.lost() > MOST_LOST
+    }
+}
+
+impl fmt::Display for Rocking {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let Self { block, blocks_on_it, peak_m_s2, rocks_at_m_s2, rigid_m_s2, advised_penalty_pa } = self;
+        let with = match blocks_on_it {
+            0 => String::new(),
+            on_it => format!(", with {} on it,", counted(*on_it, "block", "blocks")),
+        };
+        write!(
+            f,
+            "block `{block}`{with} rocks from {rocks_at_m_s2:.3} m/s² on, {rigid_m_s2:.3} m/s² if contact did not give way: penetration takes {:.1} %, \
+             limit {:.0} %; the base reaches {peak_m_s2:.3} m/s²",
+            100.0 * self.lost(),
+            100.0 * MOST_LOST
+        )?;
+        if self.is_doubtful() { write!(f, ": raise penalty_pa to {advised_penalty_pa:.0e}") } else { Ok(()) }
+    }
+}
+
+/// The block that loses most on a shaken base; none where no base is shaken by a record, without gravity, and of potentials other than `Smooth`.
+pub fn worst(scene: &Scene, simulation: &Simulation) -> Option<Rocking> {
+    let Some(Contact::Potential { penalty_pa, potential: Potential::Smooth { reference_m }, .. }) =
+        scene.contact
+    else {
+        return None;
+    };
+    let (gravity, blocks) = (Vec3::from(scene.gravity_m_s2), simulation.blocks());
+    let peak = peak_across(simulation, &gravity)?;
+    let free: Vec<BlockId> =
+        blocks.ids().filter(|block| simulation.shape(*block).kind != BodyKind::Fixed).collect();
+    if free.len() > MOST_BLOCKS {
+        return None;
+    }
+    let bases: Vec<(BlockId, Base)> =
+        free.into_iter().filter_map(|block| Some((block, Base::of(simulation, block, &gravity)?))).collect();
+    let soft_per_m = |penalty_pa: f64| reference_m / (2.0 * penalty_pa);
+    let found = bases.iter().flat_map(|(block, base)| {
+        let stack = Stack::new(simulation, &bases, *block, base, &gravity);
+        let thresholds = [peak.normalize(), -peak.normalize()].map(|along| {
+            let stack = stack.as_ref()?;
+            let rigid_m_s2 = stack.threshold(&along, 0.0)?;
+            let rocks_at_m_s2 = stack.threshold(&along, soft_per_m(penalty_pa))?;
+            Some((stack.clone(), along, [rocks_at_m_s2, rigid_m_s2], block))
+        });
+        thresholds.into_iter().flatten()
+    });
+    let lost = |at: [f64; 2]| 1.0 - at[0] / at[1];
+    let (stack, along, at, block) = found.max_by(|a, b| lost(a.2).total_cmp(&lost(b.2)))?;
+    let is_enough = |penalty_pa: f64| {
+        stack.threshold(&along, soft_per_m(penalty_pa)).is_some_and(|soft| lost([soft, at[1]]) <= ADVISED)
+    };
+    let advised_penalty_pa = if lost(at) > ADVISED { least_from(penalty_pa, is_enough) } else { penalty_pa };
+    Some(Rocking {
+        block: blocks.names[block.index()].clone(),
+        blocks_on_it: stack.masses.len() - 1,
+        peak_m_s2: peak.norm(),
+        rocks_at_m_s2: at[0],
+        rigid_m_s2: at[1],
+        advised_penalty_pa,
+    })
+}
+
+/// About the least penalty from one on that is enough [Pa].
+fn least_from(penalty_pa: f64, is_enough: impl Fn(f64) -> bool) -> f64 {
+    let (mut low, mut high) = (0.0, MOST_DECADES);
+    for _ in 0..12 {
+        let middle = 0.5 * (low + high);
+        if is_enough(penalty_pa * 10_f64.powf(middle)) { high = middle } else { low = middle }
+    }
+    penalty_pa * 10_f64.powf(high)
+}
+
+/// The largest acceleration of a record that moves blocks, as far as it is across gravity [m/s²].
+fn peak_across(simulation: &Simulation, gravity: &Vec3) -> Option<Vec3> {
+    let down = gravity.try_normalize(0.0)?;
+    let motions = simulation.blocks().ids().flat_map(|block| &simulation.shape(block).supports.motions);
+    let across = motions.map(|motion| {
+        let peak = motion.peak_acceleration();
+        peak - peak.dot(&down) * down
+    });
+    across.max_by(|a, b| a.norm().total_cmp(&b.norm())).filter(|peak| peak.norm() > 0.0)
+}
+
+/// A block and all that rests on it alone, on its base.
+#[derive(Clone)]
+struct Stack<'a> {
+    base: &'a Base,
+    /// Mass [kg] and centre [m] of each.
+    masses: Vec<(f64, Vec3)>,
+    gravity: &'a Vec3,
+}
+
+impl<'a> Stack<'a> {
+    /// None where something rests on the stack and on other blocks.
+    fn new(
+        simulation: &Simulation,
+        bases: &[(BlockId, Base)],
+        first: BlockId,
+        base: &'a Base,
+        gravity: &'a Vec3,
+    ) -> Option<Self> {
+        let mut stack = vec![first];
+        let mut grows = true;
+        while grows {
+            grows = false;
+            for (block, base) in bases.iter().filter(|(_, base)| !base.on.is_empty()) {
+                let on_it = base.on.iter().filter(|on| stack.contains(on)).count();
+                if on_it == base.on.len() && !stack.contains(block) {
+                    stack.push(*block);
+                    grows = true;
+                }
+            }
+        }
+        let leans = |(block, base): &(BlockId, Base)| {
+            !stack.contains(block) && base.on.iter().any(|on| stack.contains(on))
+        };
+        if bases.iter().any(leans) {
+            return None;
+        }
+        let mass = |block: &BlockId| {
+            let (operator, nodes) =
+                (&simulation.shape(*block).operator, simulation.blocks().nodes_of(*block));
+            (operator.mass_kg, operator.center(&simulation.start_position()[nodes]))
+        };
+        Some(Self { base, masses: stack.iter().map(mass).collect(), gravity })
+    }
+
+    /// The acceleration of the base along a direction up to which it stands [m/s²], for θ N = `soft_per_m` N²/∫ (s − s₀) dA; none where it does not stand at rest, or
+    /// where nothing topples it.
+    fn threshold(&self, along: &Vec3, soft_per_m: f64) -> Option<f64> {
+        let (mut low, mut high) = (0.0, MOST_G * self.gravity.norm());
+        if !self.stands(along, low, soft_per_m) || self.stands(along, high, soft_per_m) {
+            return None;
+        }
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if self.stands(along, middle, soft_per_m) { low = middle } else { high = middle }
+        }
+        Some(low)
+    }
+
+    /// Whether it stands on a base that accelerates.
+    fn stands(&self, along: &Vec3, acceleration_m_s2: f64, soft_per_m: f64) -> bool {
+        let [one, two, normal] = &self.base.axes;
+        let flat = |v: &Vec3| Vec3::new(one.dot(v), two.dot(v), 0.0);
+        // Inertia tips it against the acceleration.
+        let Some(out) = flat(&-along).try_normalize(0.0) else { return true };
+        let field = self.gravity - acceleration_m_s2 * along;
+        let (across, tangential) = (field.dot(normal), flat(&field).dot(&out));
+        if across <= 0.0 {
+            return false;
+        }
+        let mass_kg: f64 = self.masses.iter().map(|(mass, _)| mass).sum();
+        let mean = |of: &dyn Fn(&Vec3) -> f64| {
+            self.masses.iter().map(|(mass, x)| mass * of(x)).sum::<f64>() / mass_kg
+        };
+        let height_m = mean(&|x| (self.base.origin - x).dot(normal));
+        let place_m = mean(&|x| flat(&(x - self.base.origin)).dot(&out));
+        let foot_m = place_m + height_m * tangential / across;
+        let arm_m = height_m - (place_m - foot_m) * tangential / across;
+        let places: Vec<[f64; 2]> =
+            self.base.points.iter().map(|[x, y]| [out.x * x + out.y * y, out.x * y - out.y * x]).collect();
+        let (least_m, most_m) =
+            places.iter().fold((f64::MAX, f64::MIN), |(a, b), [s, _]| (a.min(*s), b.max(*s)));
+        if soft_per_m == 0.0 || foot_m > most_m {
+            return foot_m <= most_m;
+        }
+        (0..PLACES).any(|k| {
+            let inside = 4.0 * 10_f64.powf(-7.0 * f64::from(k) / f64::from(PLACES));
+            let from_m = most_m - inside * (most_m - least_m);
+            let [first, second] = moments_beyond(&places, from_m);
+            first > 0.0 && from_m + second / first >= foot_m + soft_per_m * mass_kg * across / first * arm_m
+        })
+    }
+}
+
+/// ∫ σ dA and ∫ σ² dA over the part of a convex polygon where σ = s − s₀ > 0; s is the first coordinate.
+fn moments_beyond(polygon: &[[f64; 2]], from_m: f64) -> [f64; 2] {
+    let mut kept: Vec<[f64; 2]> = Vec::with_capacity(polygon.len() + 1);
+    for (k, p) in polygon.iter().enumerate() {
+        let q = &polygon[(k + 1) % polygon.len()];
+        let (at_p, at_q) = (p[0] - from_m, q[0] - from_m);
+        if at_p >= 0.0 {
+            kept.push([at_p, p[1]]);
+        }
+        if at_p * at_q < 0.0 {
+            kept.push([0.0, p[1] + at_p / (at_p - at_q) * (q[1] - p[1])]);
+        }
+    }
+    let mut sums = [0.0; 2];
+    for k in 2..kept.len() {
+        let [a, b, c] = [kept[0], kept[k - 1], kept[k]];
+        let area_m2 = 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])).abs();
+        let sum = a[0] + b[0] + c[0];
+        sums[0] += area_m2 * sum / 3.0;
+        sums[1] += area_m2 * (sum * sum + a[0] * a[0] + b[0] * b[0] + c[0] * c[0]) / 12.0;
+    }
+    sums
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Model;
+
+    const PENALTY_PA: f64 = 2e9;
+
+    /// Cubes of 1 m on each other on a base that follows a record of 3 m/s².
+    fn shaken(cubes: usize) -> Option<Rocking> {
+        // Tests run side by side.
+        let (process, thread) = (std::process::id(), std::thread::current().id());
+        let record = std::env::temp_dir().join(format!("ndda_rocking_{process}_{thread:?}.csv"));
+        std::fs::write(&record, "time_s,acceleration_m_s2\n0,0\n0.5,3\n1,-2\n1.5,0\n").unwrap();
+        let cube = |k: usize| {
+            format!(
+                "(name: \"cube_{k}\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), at_m: (0, 0, {k}))"
+            )
+        };
+        let cubes: Vec<String> = (0..cubes).map(cube).collect();
+        let text = format!(
+            "(title: \"t\", time: (step_s: 1e-3, end_s: 1.5), gravity_m_s2: (0, 0, -10),
+             materials: [(name: \"rock\", young_pa: 2e10, poisson: 0.25, density_kg_m3: 2500)],
+             blocks: [(name: \"base\", material: \"rock\", body: Fixed, shape: Box(size_m: (4, 3, 1), cells: (2, 1, 1)), at_m: (-2, -1, -1)), {}],
+             supports: [(block: \"base\", on: All, hold: Shaking([(direction: (1, 0, 0), record: (file: {record:?}))]))],
+             contact: Potential(penalty_pa: {PENALTY_PA}, potential: Smooth(reference_m: 1), friction: (friction_deg: 60)))",
+            cubes.join(", ")
+        );
+        let loaded = ndda_io::read::load_text("t.ron", &text, &[], None).unwrap();
+        let scene = loaded.scene.clone();
+        let found = worst(&scene, &Model::new(loaded, std::path::Path::new(".")).unwrap().simulation);
+        std::fs::remove_file(record).unwrap();
+        found
+    }
+
+    #[test]
+    fn a_stack_rocks_where_the_closed_form_of_a_rectangle_says() {
+        for cubes in [1, 3] {
+            let found = shaken(cubes).unwrap();
+            let (height_m, weight_n) = (0.5 * cubes as f64, 2.5e4 * cubes as f64);
+            let d_m = (2.0 * weight_n * height_m / (9.0 * PENALTY_PA)).cbrt();
+            // The places of s₀ are 4 % apart, and at the largest a they count by their square.
+            let (rigid, soft) = (10.0 * 0.5 / height_m, 10.0 * (0.5 - 1.5 * d_m) / height_m);
+            assert!((found.rigid_m_s2 / rigid - 1.0).abs() < 1e-9, "{found:?}, {rigid}");
+            assert!((found.rocks_at_m_s2 / soft - 1.0).abs() < 1e-4, "{found:?}, {soft}");
+            assert!((found.peak_m_s2 - 3.0).abs() < 1e-12 && found.blocks_on_it == cubes - 1, "{found:?}");
+            // 12 halvings of eight decades.
+            let advised_pa = PENALTY_PA * ((1.0 - soft / rigid) / ADVISED).powi(3).max(1.0);
+            assert!((found.advised_penalty_pa / advised_pa).log10().abs() < 4e-3, "{found:?}, {advised_pa}");
+        }
+    }
+
+    #[test]
+    fn it_counts_only_where_the_base_shakes_as_much() {
+        assert!(!shaken(1).unwrap().is_doubtful(), "a cube rocks at 10 m/s² only");
+        let text = shaken(4).unwrap().to_string();
+        assert!(text.starts_with("block `cube_0`, with 3 blocks on it, rocks from 2."), "{text}");
+    }
+}
