@@ -19,7 +19,7 @@ use crate::numbers::counted;
 /// Part of the acceleration that penetration may take.
 pub const MOST_LOST: f64 = 0.06;
 /// Part that is left to it with the penalty that is advised.
-const ADVISED: f64 = 0.03;
+const ADVISED: f64 = 0.05;
 /// Most free blocks of a scene that are looked at: each is compared with all others.
 const MOST_BLOCKS: usize = 100;
 /// Places of s₀, from a millionth of the depth of the base inside its edge to four depths.
@@ -42,7 +42,7 @@ pub struct Rocking {
     pub rocks_at_m_s2: f64,
     /// The same on an edge that does not give way [m/s²].
     pub rigid_m_s2: f64,
-    /// Penalty with which penetration takes half of what it may, that of the scene where it takes no more [Pa].
+    /// Penalty with which penetration takes 5 %, that of the scene where it takes no more [Pa].
     pub advised_penalty_pa: f64,
 }
 
