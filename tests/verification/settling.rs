@@ -252,3 +252,40 @@ fn what_only_rounding_moves_is_at_rest_whatever_the_step() {
         );
     }
 }
+
+/// A scene that is broken off on its way to rest, after any step, written and read again, comes to rest with the same bits.
+#[test]
+fn settling_goes_on_from_any_step_with_the_same_bits() {
+    let scene = std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/extreme/overlap.ron"));
+    let open = || {
+        let model = ndda::Model::open(scene, &["time.end_s=0.01".into()]);
+        model.unwrap_or_else(|errors| panic!("{}", errors.render(false))).simulation
+    };
+    for damping in [Damping::Kinetic, Damping::Local { factor: 0.8 }] {
+        let settle = Settle { damping, mass_scaling: true, ..Settle::new(1e-9, 100_000) };
+        let mut whole = open();
+        let all = whole.settle(&settle).unwrap().steps;
+        let bits = |simulation: &ndda_solver::Simulation| {
+            let state = simulation.state();
+            postcard::to_stdvec(&(&state.position, &state.velocity, &state.contact)).unwrap()
+        };
+        let rest = bits(&whole);
+        for broken_off in 1..all {
+            let mut first = open();
+            let mut settling = first.begin_to_settle(&settle);
+            let mut until = |settled: &Settled| match settled.steps == broken_off {
+                true => ControlFlow::Break(()),
+                false => ControlFlow::Continue(()),
+            };
+            assert!(!first.go_on_settling(&settle, &mut settling, &mut until).unwrap());
+            let kept = postcard::to_stdvec(&(first.snapshot(), &settling)).unwrap();
+            let (snapshot, mut settling) = postcard::from_bytes(&kept).unwrap();
+            let mut second = open();
+            second.restore(snapshot).unwrap();
+            assert!(
+                second.go_on_settling(&settle, &mut settling, &mut |_| ControlFlow::Continue(())).unwrap()
+            );
+            assert!(bits(&second) == rest, "{damping:?}, broken off after {broken_off} of {all} steps");
+        }
+    }
+}
