@@ -4,7 +4,7 @@ use ndda_mesh::Vec3;
 use ndda_solver::Simulation;
 
 use crate::evidence::Answer::{AtMost, Within};
-use crate::evidence::{rounding, row};
+use crate::evidence::{rounding, rounding_walk, row};
 use crate::{POISSON, YOUNG_PA, assert_uniform_strain, displacements, simulation};
 
 const MOVING: [&str; 3] = ["Elastic", "Affine", "Rigid"];
@@ -24,6 +24,9 @@ fn steps() -> usize {
     std::env::var("NDDA_STEPS").ok().and_then(|text| text.parse().ok()).unwrap_or(20_000)
 }
 
+/// Steps in which a brick turns over a few times.
+const TURNS: usize = 5_000;
+
 #[test]
 fn a_tumbling_block_of_any_kind_keeps_angular_momentum_energy_and_size() {
     for body in MOVING {
@@ -42,10 +45,10 @@ fn a_tumbling_block_of_any_kind_keeps_angular_momentum_energy_and_size() {
         let worst = simulation.invariants();
         let energy = (end.total_j() / start.total_j() - 1.0).abs();
         let named = |what: &str| format!("{body} brick that tumbles for {} steps: {what}", steps());
-        // Conserved exactly: what is left is the rounding of so many steps. Rock that deforms is stretched by its spin, by ρ ω² r²/E = 5e-7 of E
-        // and of the energy, which vibrates: twice that passes. Rigid rock has no stress at all.
-        let rounds = rounding(steps() as u32);
-        let (lost, stressed) = if body == "Rigid" { (rounds, 0.0) } else { (1e-6, 1e-6) };
+        // Conserved exactly: what is left is the rounding of so many steps. Rock that deforms is stretched by its spin, by ρ ω² r²/E = 5e-7, which
+        // vibrates: twice that passes. The part of the energy that stretches it is as small, of which the scheme may lose some. Rigid rock has no stress at all.
+        let rounds = rounding_walk(steps());
+        let (lost, stressed) = if body == "Rigid" { (rounds, 0.0) } else { (largest / 20e9, 1e-6) };
         row("spin of all kinds of body", &named("momentum"), worst.linear_momentum, AtMost(rounds));
         row("spin of all kinds of body", &named("angular momentum"), worst.angular_momentum, AtMost(rounds));
         row("spin of all kinds of body", &named("change of energy"), energy, AtMost(lost));
@@ -61,7 +64,7 @@ fn a_rigid_block_keeps_the_energy_of_its_spin_to_rounding_and_turns_over_about_i
         let mut simulation = tumbling("Rigid", integrator);
         let start = simulation.sample().unwrap();
         let mut lowest = f64::INFINITY;
-        for _ in 0..5_000 {
+        for _ in 0..TURNS {
             simulation.step().unwrap();
             let x = &simulation.state().position;
             // The box's own y axis: Dzhanibekov's turn takes it over.
@@ -74,19 +77,22 @@ fn a_rigid_block_keeps_the_energy_of_its_spin_to_rounding_and_turns_over_about_i
             "spin of all kinds of body",
             &named("kinetic energy [J]"),
             end.kinetic_j,
-            Within(start.kinetic_j, 1e-12),
+            Within(start.kinetic_j, rounding_walk(TURNS)),
         );
         row(
             "spin of all kinds of body",
             &named("angular momentum"),
             simulation.invariants().angular_momentum,
-            AtMost(1e-12),
+            AtMost(rounding_walk(TURNS)),
         );
         assert!(lowest < -0.5, "{integrator}: it never turned over ({lowest})");
         let rest = &simulation.blocks().rest_position;
         let x = &simulation.state().position;
-        let stretch = ((x[7] - x[0]).norm() / (rest[7] - rest[0]).norm() - 1.0).abs();
-        row("spin of all kinds of body", &named("stretch of its diagonal"), stretch, AtMost(1e-14));
+        let diagonal = (rest[7] - rest[0]).norm();
+        let stretch = ((x[7] - x[0]).norm() / diagonal - 1.0).abs();
+        // Its corners are found from its centre and its turn at each step: both ends are rounded to half a digit of where it has flown to.
+        let rounds = f64::EPSILON * x[0].amax() / diagonal;
+        row("spin of all kinds of body", &named("stretch of its diagonal"), stretch, AtMost(rounds));
     }
 }
 
@@ -112,8 +118,10 @@ fn blocks_of_unlike_kinds_meet_and_keep_their_momenta() {
         let worst = simulation.invariants();
         assert!(pairs > 100, "they do not meet");
         let named = |what: &str| format!("{a} and {b} blocks that meet: {what}");
-        row("bodies", &named("momentum"), worst.linear_momentum, AtMost(1e-12));
-        row("bodies", &named("angular momentum"), worst.angular_momentum, AtMost(1e-12));
+        // Kept but for rounding; a block that does not deform may round the same way for as long as it keeps its velocity and spin.
+        let rounds = AtMost(rounding(1500));
+        row("bodies", &named("momentum"), worst.linear_momentum, rounds);
+        row("bodies", &named("angular momentum"), worst.angular_momentum, rounds);
         // While blocks are pressed, explicit contact holds back h²/4 of its energy, and at either end of it as much: h²/2 at most.
         let most = (0.5 * worst.max_h * worst.max_h).min(1e-3);
         row("bodies", &named("energy gained"), worst.energy_gain, AtMost(most));
@@ -150,7 +158,7 @@ fn a_fixed_block_has_no_unknowns_bears_its_load_and_goes_where_it_is_told_to() {
           contact: Off)",
     );
     assert_eq!((simulation.unknowns(), simulation.factors()), (0, 0));
-    simulation.sample().unwrap();
+    let start = simulation.sample().unwrap();
     for _ in 0..500 {
         simulation.step().unwrap();
     }
@@ -158,11 +166,23 @@ fn a_fixed_block_has_no_unknowns_bears_its_load_and_goes_where_it_is_told_to() {
     assert!(moved[..27].iter().all(|u| *u == Vec3::zeros()));
     assert!(moved[27..].iter().all(|u| (u - Vec3::new(0.15, 0.0, 0.2)).norm() < 1e-15));
     let sample = simulation.sample().unwrap();
-    // Lifting 2000 kg by 0.2 m, and bringing it to 0.5 m/s.
-    let work = 2000.0 * (10.0 * 0.2 + 0.5 * 0.25);
-    row("bodies", "work of moving a fixed block [J]", sample.motion_work_j, Within(work, 0.06));
-    // What moves it books as much momentum as it has: 500 steps that round either way, √n ε, twofold.
-    let rounds = 2.0 * 500f64.sqrt() * f64::EPSILON;
+    // Lifting 2000 kg by 0.2 m. It moves at 0.5 m/s from the start on, which is energy that the scene begins with.
+    let moving_j = 0.5 * 2000.0 * 0.5 * 0.5;
+    row(
+        "bodies",
+        "kinetic energy of a moved block at the start [J]",
+        start.kinetic_j,
+        Within(moving_j, rounding(8)),
+    );
+    let work_j = 2000.0 * 10.0 * 0.2;
+    row(
+        "bodies",
+        "work of moving a fixed block [J]",
+        sample.motion_work_j,
+        Within(work_j, rounding_walk(500)),
+    );
+    // What moves it books as much momentum as it has.
+    let rounds = rounding_walk(500);
     row("bodies", "momentum of fixed blocks", simulation.invariants().linear_momentum, AtMost(rounds));
 }
 

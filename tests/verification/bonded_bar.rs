@@ -8,6 +8,7 @@ use crate::evidence::row;
 use crate::simulation;
 
 const YOUNG_PA: f64 = 30e9;
+const DENSITY_KG_M3: f64 = 2500.0;
 const LENGTH_M: f64 = 0.1;
 const AREA_M2: f64 = 1e-4;
 const TENSION_PA: f64 = 3e6;
@@ -28,7 +29,7 @@ fn scene(cells: [u32; 2]) -> String {
     };
     format!(
         "(title: \"bar\", time: (step_s: {STEP_S:e}, end_s: {END_S}, integrator: Newmark(alpha: 0.5, delta: 1)),
-          materials: [(name: \"rock\", young_pa: {YOUNG_PA:e}, poisson: 0, density_kg_m3: 2500)],
+          materials: [(name: \"rock\", young_pa: {YOUNG_PA:e}, poisson: 0, density_kg_m3: {DENSITY_KG_M3})],
           blocks: [{}{}],
           supports: [
               (block: \"lower\", on: Plane(point_m: (0, 0, 0), normal: (0, 0, 1)), hold: Fixed),
@@ -49,6 +50,14 @@ fn stress_pa(bar: &Simulation, end: &[usize]) -> f64 {
     YOUNG_PA * moved_m / (0.5 * LENGTH_M)
 }
 
+/// Stress with which a half of the bar vibrates at a time after its end has been sped up by a velocity: E v/(ω L/2), which the scheme (α = ½, δ = 1) damps by
+/// ¼ (ω Δt)² a step. ω² = (2 E/L − d)/(ρ L/4) of a mesh of one cell along each half, whose ends a joint drives apart that softens by d/2 per opening [Pa/m].
+fn rings_pa(velocity_m_s: f64, after_s: f64, softens_pa_m: f64) -> f64 {
+    let omega2 = (2.0 * YOUNG_PA / LENGTH_M - softens_pa_m) / (0.25 * DENSITY_KG_M3 * LENGTH_M);
+    let decay = (-0.25 * omega2 * STEP_S * after_s).exp();
+    YOUNG_PA * velocity_m_s / (0.5 * LENGTH_M * omega2.sqrt()) * decay
+}
+
 #[test]
 fn a_bar_with_a_joint_across_breaks_by_its_fracture_energy() {
     for cells in [[1, 1], [2, 1], [2, 2]] {
@@ -67,13 +76,25 @@ fn a_bar_with_a_joint_across_breaks_by_its_fracture_energy() {
         // u = σ (L/E + 1/k) + w, σ = f_t (1 − w/δ_c).
         let (last_m, gives_m_pa) = (2.0 * ENERGY_J_M2 / TENSION_PA, LENGTH_M / YOUNG_PA + 1.0 / JOINT_PA_M);
         let exact_pa = (last_m - 40e-6) / (last_m / TENSION_PA - gives_m_pa);
+        // The middle of the bar, at rest, is to move at half the speed of the end from the start on. At the peak the halves, which opened at v f/u_f L/2E, close at
+        // v f/(δ_c − u_f) L/2E instead. Both vibrations may add.
+        let (speed_m_s, half_m_pa) = (PULLED_M / END_S, 0.5 * LENGTH_M / YOUNG_PA);
+        let (peak_m, peak_s) = (TENSION_PA * gives_m_pa, TENSION_PA * gives_m_pa / speed_m_s);
+        let turn_m_s = speed_m_s * half_m_pa * TENSION_PA * (1.0 / peak_m + 1.0 / (last_m - peak_m));
+        let at_peak_pa = rings_pa(0.5 * speed_m_s, peak_s, 0.0);
+        let (at_40_s, softens_pa_m) = (40e-6 / speed_m_s, 2.0 * TENSION_PA / last_m);
+        let at_40_off_pa = rings_pa(0.5 * speed_m_s, at_40_s, softens_pa_m)
+            + rings_pa(turn_m_s, at_40_s - peak_s, softens_pa_m);
         let across = format!("a joint of {} × {} cells across", cells[0], cells[1]);
-        row("bonded bar", &format!("largest force, {across} [N]"), peak_pa * AREA_M2, Within(300.0, 5e-3));
-        row("bonded bar", &format!("stress at 40 µm, {across} [Pa]"), at_40_pa, Within(exact_pa, 5e-3));
+        let what = format!("largest force, {across} [N]");
+        row("bonded bar", &what, peak_pa * AREA_M2, Within(TENSION_PA * AREA_M2, at_peak_pa / TENSION_PA));
+        let what = format!("stress at 40 µm, {across} [Pa]");
+        row("bonded bar", &what, at_40_pa, Within(exact_pa, at_40_off_pa / exact_pa));
         let lost_j = -bar.sample().unwrap().friction_work_j;
-        // The promise of docs/verification/verification.md: 1 % of G_I A.
+        // The traction that counts is that at the end of a step: of first order in what the joint opens in a step over its elastic opening.
         let what = format!("work of {across} [J]");
-        row("bonded bar", &what, lost_j, Within(ENERGY_J_M2 * AREA_M2, 0.01));
+        let step = speed_m_s * STEP_S * JOINT_PA_M / TENSION_PA;
+        row("bonded bar", &what, lost_j, Within(ENERGY_J_M2 * AREA_M2, step));
         assert!(bar.state().contact.bonds.is_empty());
     }
 }

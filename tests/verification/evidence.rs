@@ -57,6 +57,12 @@ pub fn rounding(terms: u32) -> f64 {
     f64::from(terms) * f64::EPSILON
 }
 
+/// Relative error of what so many steps keep but for their rounding, where each step rounds either way: a walk of n steps of ε is √n ε from where it
+/// began, and seldom farther than eight times that.
+pub fn rounding_walk(steps: usize) -> f64 {
+    8.0 * (steps as f64).sqrt() * f64::EPSILON
+}
+
 /// Prints the row `id`, the case in a few words, `what` was measured with its unit; panics unless the answer holds.
 #[track_caller]
 pub fn row(id: &str, what: &str, measured: f64, answer: Answer) {

@@ -25,6 +25,11 @@ const ALONG_X_PA: f64 = 30e6;
 const ALONG_Z_PA: f64 = 15e6;
 /// Tetrahedra in a cell of the blocks.
 const CELL: usize = 6;
+/// Length of a cell along the radius, beside the tunnel [m].
+const CELL_M: f64 = 0.08;
+/// Of a displacement that falls as r⁻³, linear elements miss h² u''/8 = 12/8 (h/a)² at the tunnel, and of a stress that falls as r⁻⁴ its mean over a cell is off by
+/// h² σ''/24 = 20/24 (h/a)²: together 1.5 %.
+const MESH: f64 = (12.0 / 8.0 + 20.0 / 24.0) * CELL_M * CELL_M / (A_M * A_M);
 
 /// Stresses (tension positive) and displacements since the tunnel is there, at a place (r, θ from x).
 struct Field {
@@ -146,7 +151,7 @@ fn a_tunnel_in_glued_blocks_has_the_displacements_and_stresses_of_the_closed_for
         case,
         "largest error of radial displacements over the largest of them",
         worst / largest,
-        AtMost(0.02),
+        AtMost(MESH),
     );
     let mut stress_pa = vec![[0.0; 6]; blocks.tets.len()];
     outcome.simulation.recover_stress(&mut stress_pa).unwrap();
@@ -181,7 +186,8 @@ fn a_tunnel_in_glued_blocks_has_the_displacements_and_stresses_of_the_closed_for
     }
     for (name, error) in ["hoop", "radial", "shear"].iter().zip(worst) {
         let what = format!("largest error of {name} stresses over the largest stress");
-        row(case, &what, error / most_pa, AtMost(0.02));
+        row(case, &what, error / most_pa, AtMost(MESH));
     }
+    // Those are less than the largest, and steeper: a third more.
     row(case, "largest error of hoop stresses beside the tunnel, each over its own", at_wall, AtMost(0.02));
 }

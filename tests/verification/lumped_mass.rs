@@ -150,10 +150,12 @@ fn a_lumped_block_falls_and_spins_with_its_books_in_order() {
         "mass",
         "momentum of a lumped block after a second of fall [kg m/s]",
         end.momentum.z,
-        Within(-7500.0, 1e-12),
+        Within(-7500.0, rounding(1000)),
     );
-    row("mass", "energy of a lumped block after it [J]", end.total_j(), Within(energy_j, 1e-6));
-    row("mass", "angular momentum of it", simulation.invariants().angular_momentum, AtMost(1e-12));
+    // Its spin stretches it by ρ ω² r²/E, which vibrates: as much of its energy may be lost by the scheme.
+    let stretch = 2500.0 * 10.0 * (0.5f64.powi(2) + 0.3f64.powi(2) + 0.25f64.powi(2)) / 1e9;
+    row("mass", "energy of a lumped block after it [J]", end.total_j(), Within(energy_j, stretch.min(1e-6)));
+    row("mass", "angular momentum of it", simulation.invariants().angular_momentum, AtMost(rounding(1000)));
 }
 
 /// A cube of 1 m and 2500 kg of six tetrahedra under a couple of 1000 N m about z for 10 ms.

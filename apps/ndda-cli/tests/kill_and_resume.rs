@@ -116,14 +116,14 @@ fn killed_and_resumed(scenes: &[(&str, &[&str])], kills: usize) {
     let place = tempfile::tempdir().expect("a folder");
     let mut random = Random(7);
     let mut resumed = 0;
-    for &(name, overrides) in scenes {
+    for (number, &(name, overrides)) in scenes.iter().enumerate() {
         let (scene, whole) = (scene(name), place.path().join("whole"));
         let started = Instant::now();
         assert!(run(&scene, overrides, &whole, "1").wait().expect("an end").success(), "{name}");
         let (lasts, expected) = (started.elapsed().as_secs_f64(), results(&whole));
         for kill in 0..kills.div_ceil(scenes.len()) {
             // A folder of its own: a run that is killed before it has begun leaves the results of an earlier one as they were.
-            let broken = place.path().join(format!("{}_{}_{kill}", name.replace('/', "_"), overrides.len()));
+            let broken = place.path().join(format!("{number}_{kill}"));
             let mut child = run(&scene, overrides, &broken, ["1", "2"][kill % 2]);
             let out = broken.display().to_string();
             // Killed once, and often once more while it is being resumed.

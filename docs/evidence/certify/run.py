@@ -46,6 +46,14 @@ SHORTENED = {
     "scenes/extreme/stack.ron": ["time.end_s=0.1"],
     "scenes/extreme/ramp_at_its_limit.ron": ["time.end_s=0.5"],
     "scenes/extreme/sudden_load_at_the_limit.ron": ["time.end_s=0.5"],
+    "scenes/safety/slope_three_sets.ron": ["time.end_s=0.02"],
+    "scenes/safety/slope_three_sets_wet.ron": ["time.end_s=0.02"],
+    "scenes/works/boulder_terrain.ron": ["time.end_s=0.05"],
+    "scenes/works/drums_shaken.ron": ["time.end_s=0.05"],
+    "scenes/works/fisher_blocks.ron": ["time.end_s=2e-4"],
+    "scenes/works/slope_1100_blocks.ron": ["time.end_s=4e-3"],
+    "scenes/works/slope_earthquake.ron": ["time.end_s=0.5"],
+    "scenes/works/voronoi_collapse.ron": ["time.end_s=2e-3"],
 }
 
 

@@ -176,7 +176,7 @@ fn corners_that_collide_keep_momentum_and_energy() {
             "extreme: corners and edges",
             &format!("momentum lost by corners that meet, gap {gap} m"),
             worst.linear_momentum,
-            AtMost(1e-12),
+            AtMost(rounding(500)),
         );
         row(
             "extreme: corners and edges",

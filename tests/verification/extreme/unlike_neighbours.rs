@@ -53,8 +53,8 @@ fn stiff_rock_on_soft_ground_bears_the_stress_of_springs_in_series() {
             "extreme: unlike stiffness",
             &format!("stress of the {name} bar, modulus ratio 1e6 [Pa]"),
             mean,
-            // The promise of the header of scenes/extreme/stiff_on_soft.ron.
-            Within(series, 2e-2),
+            // It settled to 1e-5 of its largest speed, and swings by as much of its stress; tenfold. The header of scenes/extreme/stiff_on_soft.ron promises 2 %.
+            Within(series, 1e-4),
         );
     }
 }

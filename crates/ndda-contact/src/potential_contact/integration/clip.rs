@@ -117,12 +117,25 @@ impl Polygon {
         }
     }
 
-    /// Adds a corner, unless there are as many already as may be.
+    /// Adds a corner. Where there are as many already as there is room for, the rim is one that rounding made wavy, and its flattest corner gives way.
     fn push(&mut self, corner: [f64; 2], most: usize) {
-        // Only a rim that rounding made wavy could have more corners; the excess has no area.
-        if self.len < most.min(MOST) {
-            self.corners[self.len] = corner;
-            self.len += 1;
+        if self.len == most.min(MOST) {
+            self.drop_flattest(&corner);
+        }
+        self.corners[self.len] = corner;
+        self.len += 1;
+    }
+
+    /// Drops the corner that takes the least area with it: those that a wavy rim has too many lie on the cut.
+    fn drop_flattest(&mut self, next: &[f64; 2]) {
+        let corner = |k: usize| if k == self.len { next } else { &self.corners[k] };
+        let area = |k: usize| {
+            let ([x, y], [from_x, from_y], [to_x, to_y]) = (corner(k), corner(k - 1), corner(k + 1));
+            ((x - from_x) * (to_y - y) - (y - from_y) * (to_x - x)).abs()
+        };
+        if let Some(flattest) = (1..self.len).min_by(|j, k| area(*j).total_cmp(&area(*k))) {
+            self.corners.copy_within(flattest + 1..self.len, flattest);
+            self.len -= 1;
         }
     }
 
@@ -143,5 +156,39 @@ impl Polygon {
             let [u, v] = [pair[0], pair[1]].map(|c| [c[0] - apex[0], c[1] - apex[1]]);
             ([apex, pair[0], pair[1]], u[0] * v[1] - u[1] * v[0])
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two blocks that share a corner up to rounding: two of the cuts meet there within ε, and the rim crosses one of them three times.
+    #[test]
+    fn a_rim_that_runs_along_a_cut_loses_no_area() {
+        let lambda = [
+            [1.5700307444318162, -0.06392034520699282, 0.0],
+            [-2.457449072459961, 0.9659139789814942, 1.0],
+            [-0.3379895224425295, 0.5063458499544944, -1.5341117345099233e-16],
+            [2.2254078504706754, -0.40833948372899637, -0.0],
+        ];
+        let ahead = |j: usize| [0, 1, 2].map(|a| lambda[j][a] - if j == 2 { 0.0 } else { lambda[2][a] });
+        // Corners of the region by hand: where two of λ₀ = λ₂, λ₁ = λ₂, λ₂ = 0 and λ₃ = λ₂ meet inside.
+        let meet = |[a, b]: [[f64; 3]; 2]| {
+            let ([a0, a1, a2], [b0, b1, b2]) = (Form::through(&a).0, Form::through(&b).0);
+            let determinant = a1 * b2 - a2 * b1;
+            [(a2 * b0 - a0 * b2) / determinant, (a0 * b1 - a1 * b0) / determinant]
+        };
+        let ([x, y], [u, v]) = (meet([ahead(1), ahead(2)]), meet([ahead(1), ahead(3)]));
+        let expected = x * (v - 1.0) - u * (y - 1.0);
+        for order in [[0, 1, 2, 3], [0, 2, 1, 3], [1, 0, 3, 2], [2, 0, 1, 3], [3, 2, 1, 0], [2, 3, 0, 1]] {
+            let mut part = Polygon::all_of(&Outline::TRIANGLE);
+            for j in order {
+                let bound = if j < 2 { f64::from_bits(1) } else { 0.0 };
+                part.cut(&Form::through(&ahead(j)), bound);
+            }
+            let area: f64 = part.fan().map(|(_, twice)| twice).sum();
+            assert!((area.abs() - expected.abs()).abs() < 1e-15, "{order:?}: {area} of {expected}");
+        }
     }
 }
