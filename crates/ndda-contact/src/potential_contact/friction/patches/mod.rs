@@ -31,6 +31,7 @@ use crate::friction::patches::nodal::{Nodal, NodalSide, SideScene};
 use crate::friction::patches::opposite::Opposite;
 use crate::friction::patches::parts::FaceParts;
 use crate::friction::patches::patch::{ContactPatch, Moved, PatchFacets, PatchSummary, Remembered};
+use crate::friction::patches::solve::chunks::Division;
 use crate::friction::patches::solve::newton::Newton;
 use crate::friction::patches::solve::stage::{self, Visits};
 use crate::friction::patches::solve::{CoupledPatch, Motion, Search};
@@ -119,6 +120,9 @@ pub(crate) struct FrictionPatches {
     most_n: Vec<f64>,
     visits: Visits,
     newton: Newton,
+    /// How patches are divided among threads, and those whose friction is searched for in that order.
+    division: Division,
+    searched: Vec<u32>,
     new_faces: Vec<FaceMemory>,
     gaps_j: Vec<f64>,
     /// Second moments of each facet about its own centre of pressure [m²].
@@ -266,15 +270,15 @@ impl FrictionPatches {
         let Self { nodal, is_asked, adjacency, runs, order, patches, summaries, sides, own_m2, .. } = self;
         sides.clear();
         sides.resize(patches.len(), [None; 2]);
-        nodal.begin(scene.input.blocks.len());
-        let Some(deformation) = scene.input.deformation else { return };
+        let Some(deformation) = scene.input.deformation else { return nodal.begin([].into_iter()) };
         let patch = |(k, _): (u32, f64)| {
             let (run, summary) = (runs[k as usize].places.clone(), &summaries[k as usize]);
             (k, &patches[k as usize], &order[run], summary.matters())
         };
-        let is_nodal = |block: BlockId| is_asked[block.index()] && scene.input.bodies[block.index()].deforms;
+        let is_nodal = |block: &BlockId| is_asked[block.index()] && scene.input.bodies[block.index()].deforms;
+        nodal.begin(scene.input.blocks.ids().filter(is_nodal));
         let found = SideScene { scene: *scene, forces, own_m2 };
-        nodal.take_sides(&found, |block| is_nodal(block).then(|| adjacency.at(block).map(patch)));
+        nodal.take_sides(&found, |block| adjacency.at(block).map(patch));
         nodal.add_bonds(scene);
         nodal.answer(scene, deformation);
         nodal.each_side(|block, number, side| {
@@ -287,18 +291,22 @@ impl FrictionPatches {
     fn solve(&mut self, scene: &PatchScene, forces: &[FacetForce]) -> Search {
         self.ask_blocks(scene, forces);
         let Self { patches, summaries, bodies, coupled, nodal, sides, visits, newton, .. } = self;
+        let Self { division, searched, .. } = self;
         let ContactInput { bodies: start, dt_s, is_iterated, .. } = *scene.input;
+        searched.clear();
+        searched.extend((0..).zip(&*summaries).filter(|(_, summary)| summary.matters()).map(|(k, _)| k));
+        division.divide(searched, |k| summaries[k as usize].moving(start));
         coupled.clear();
-        for (((number, patch), summary), sides) in (0..).zip(&*patches).zip(&*summaries).zip(&*sides) {
-            if summary.matters() {
-                let patch = (number, patch, summary.tolerance_n);
-                coupled.extend(CoupledPatch::new(patch, (start, nodal), *sides, dt_s));
-            }
-        }
+        coupled.extend(searched.iter().filter_map(|&number| {
+            let k = number as usize;
+            let patch = (number, &patches[k], summaries[k].tolerance_n);
+            CoupledPatch::new(patch, (start, nodal), sides[k], dt_s)
+        }));
+        division.take_groups(coupled.iter().map(|patch| summaries[patch.patch as usize].moving(start)));
         coupled.iter().for_each(|patch| patch.push_nodes(nodal));
         let (alone, eased) =
             (stage::visits_alone(coupled.len()), stage::visits_eased(coupled.len(), is_iterated));
-        let mut motion = Motion { bodies, nodal, dt_s, is_iterated, visits, alone, eased };
+        let mut motion = Motion { bodies, nodal, division, dt_s, is_iterated, visits, alone, eased };
         let search = solve::solve(coupled, start, (&mut motion, newton));
         for found in coupled.iter() {
             found.hand_over(&mut patches[found.patch as usize], (start, bodies), dt_s);

@@ -33,6 +33,16 @@ impl PatchSummary {
         2.0 * self.most_n <= self.tolerance_n
     }
 
+    /// The blocks that may move; the same one twice where the other may not.
+    pub(super) fn moving(&self, bodies: &[Body]) -> [BlockId; 2] {
+        let is_held = |block: BlockId| bodies[block.index()].mass_kg.is_infinite();
+        match [self.owner, self.target] {
+            [owner, target] if is_held(owner) => [target; 2],
+            [owner, target] if is_held(target) => [owner; 2],
+            both => both,
+        }
+    }
+
     /// Whether its friction is searched for together with that of the others.
     pub(super) fn matters(&self) -> bool {
         self.has_friction && !self.is_slight()

@@ -74,7 +74,6 @@ fn solved(tolerance: f64) -> Solved {
 /// The same, with so many visits of each patch before Newton's method.
 fn solved_with(tolerance: f64, alone: usize) -> Solved {
     let (start, mut end, mut nodal) = (bodies(), bodies(), Nodal::default());
-    nodal.begin(start.len());
     let found = patches();
     let summary = |patch: &ContactPatch| PatchSummary { has_friction: true, ..patch.summary() };
     let mut summaries: Vec<_> = found.iter().map(summary).collect();
@@ -89,6 +88,7 @@ fn solved_with(tolerance: f64, alone: usize) -> Solved {
     let mut motion = Motion {
         bodies: &mut end,
         nodal: &mut nodal,
+        division: &Division::default(),
         dt_s: DT_S,
         is_iterated: false,
         visits: &mut Visits::default(),
@@ -107,7 +107,7 @@ fn solved_with(tolerance: f64, alone: usize) -> Solved {
 /// Each patch, looked at alone while the others keep their friction, has found its own.
 fn assert_alone_would_not_change(patches: &mut [CoupledPatch], motion: &mut Motion) {
     for patch in patches.iter() {
-        let (slip, stiffness) = (patch.slip(motion), patch.stiffness / GAMMA);
+        let (slip, stiffness) = (patch.slip_in(motion), patch.stiffness / GAMMA);
         let free_slip = slip - GAMMA * (patch.flexibility * patch.force);
         let (alone, _) = patch.surface.friction(&stiffness, (&free_slip, &slip), 0.0, true);
         let off_n = (alone - patch.force).amax();
