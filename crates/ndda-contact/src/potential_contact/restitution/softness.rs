@@ -62,7 +62,8 @@ impl ContactDamping {
         let Self { columns, answering, answers, .. } = self;
         answering.clear();
         answers.clear();
-        for (block, column) in (0..).map(BlockId).zip(&mut *columns).filter(|(_, column)| !column.is_empty()) {
+        for (block, column) in (0..).map(BlockId).zip(&mut *columns).filter(|(_, column)| !column.is_empty())
+        {
             answering.push(block);
             answers.push(std::mem::take(column));
         }

@@ -12,8 +12,7 @@ use ndda_mesh::{BlockId, Mat3, Vec3};
 use rayon::prelude::*;
 
 use crate::friction::facet::FacetForce;
-use crate::friction::patches::patch::ContactPatch;
-use crate::friction::patches::spread::Spread;
+use crate::friction::patches::patch::{ContactPatch, PatchDetail};
 use crate::friction::patches::{GRAIN_BODIES, PatchScene, Place};
 use crate::model::Deformation;
 
@@ -79,9 +78,14 @@ pub(super) struct Nodal {
 #[derive(Clone, Copy)]
 pub(super) struct SideScene<'a> {
     pub scene: PatchScene<'a>,
+    /// Forces of contact on nodes, but for friction that is searched for [N].
+    pub push: &'a [Vec3],
     pub forces: &'a [FacetForce],
-    pub own_m2: &'a [Mat3],
 }
+
+/// A patch whose friction is searched for: its number, its facets, what is known of it, and the mean square distance of the points of each facet from the own
+/// centre of that.
+pub(super) type PatchOn<'a> = (u32, &'a ContactPatch, &'a [Place], &'a PatchDetail, &'a [f64]);
 
 impl Nodal {
     /// Forgets the last step, and takes the blocks that deform and have friction, ascending.
@@ -93,8 +97,8 @@ impl Nodal {
         self.columns.resize_with(room, Vec::new);
     }
 
-    /// Lets each block take its sides of patches: with the facets of each, and whether its friction matters.
-    pub(super) fn take_sides<'a, I: Iterator<Item = (u32, &'a ContactPatch, &'a [Place], bool)>>(
+    /// Lets each block take its sides of patches.
+    pub(super) fn take_sides<'a, I: Iterator<Item = PatchOn<'a>>>(
         &mut self,
         found: &SideScene,
         patches_of: impl Fn(BlockId) -> I + Sync,
@@ -104,13 +108,8 @@ impl Nodal {
         blocks.with_min_len(GRAIN_BODIES).for_each(|((&block, sides), columns)| {
             sides.begin();
             columns.clear();
-            columns.resize(found.scene.input.blocks.nodes_of(block).len(), Vec3::zeros());
-            for (number, patch, run, matters) in patches_of(block) {
-                sides.add_forces(block, found, run, columns);
-                if matters {
-                    sides.add(block, found, (number, patch, run), columns);
-                }
-            }
+            columns.extend_from_slice(&found.push[found.scene.input.blocks.nodes_of(block)]);
+            patches_of(block).for_each(|patch| sides.add(block, found, patch, columns));
         });
     }
 
@@ -210,34 +209,22 @@ impl BlockSides {
         &self.weights[from as usize..self.sides[place].end as usize]
     }
 
-    /// Adds the forces of the facets of a patch to the nodes, but for its friction.
-    fn add_forces(&self, block: BlockId, found: &SideScene, run: &[Place], nodes: &mut [Vec3]) {
-        let first = found.scene.input.blocks.nodes_of(block).start;
-        for &(_, _, t) in run {
-            let FacetForce { push, shear, .. } = found.forces[t as usize];
-            let is_owner = found.scene.owner(t) == block;
-            let force = if is_owner { push + shear } else { -(push + shear) };
-            Spread::default()
-                .each_node(&found.scene, (t, is_owner), |node, w| nodes[node - first] += w * force);
-        }
-    }
-
     /// Adds a side, and the forces of its friction as columns.
     fn add(
         &mut self,
         block: BlockId,
         found: &SideScene,
-        (number, patch, run): (u32, &ContactPatch, &[Place]),
+        (number, patch, run, detail, own_m2): PatchOn,
         columns: &mut Vec<Vec3>,
     ) {
-        let SideScene { scene, forces, own_m2 } = found;
+        let SideScene { scene, forces, .. } = found;
         let nodes = scene.input.blocks.nodes_of(block);
         self.place_of.resize(nodes.len(), 0);
         let from = self.weights.len() as u32;
-        let spread = &patch.spread;
+        let spread = &detail.spread;
         // Force on a node of share 1 at an arm of 1 m for a unit of T/r.
-        let per_arm_1_m = patch.surface.radius_m / spread.radius2_m2;
-        for &(_, _, t) in run {
+        let per_arm_1_m = detail.surface.radius_m / spread.radius2_m2;
+        for (&(_, _, t), own_m2) in run.iter().zip(own_m2) {
             let is_owner = scene.owner(t) == block;
             let arm = spread.center_of(scene, &forces[t as usize], t) - spread.center;
             let twist = per_arm_1_m * patch.normal.cross(&arm);
@@ -247,13 +234,13 @@ impl BlockSides {
             });
             if scene.sums(t).pressure > 0.0 {
                 let share = spread.weight(scene, t) / spread.total;
-                let couple = share * own_m2[t as usize].trace() * per_arm_1_m * patch.normal;
+                let couple = share * own_m2 * per_arm_1_m * patch.normal;
                 scene.couples().each_force(scene.touch(t), is_owner, &couple, |node, force| {
                     self.add_weight(from, (node - nodes.start, 0.0, force));
                 });
             }
         }
-        let (axes, twist_of_force) = ([patch.axes[0], patch.axes[1]], patch.twist_of_force());
+        let (axes, twist_of_force) = ([detail.axes[0], detail.axes[1]], detail.twist_of_force(patch));
         self.sides.push(Side { patch: number, end: self.weights.len() as u32, axes, twist_of_force });
         let first = columns.len();
         columns.resize(first + 3 * nodes.len(), Vec3::zeros());

@@ -16,7 +16,7 @@ use ndda_mesh::{BlockId, Mat3, Vec3};
 
 use crate::friction::patches::limit_surface::{LimitSurface, solved};
 use crate::friction::patches::nodal::{Nodal, NodalSide};
-use crate::friction::patches::patch::ContactPatch;
+use crate::friction::patches::patch::{ContactPatch, PatchDetail};
 use crate::friction::patches::solve::chunks::{Division, Place};
 use crate::friction::patches::solve::newton::Newton;
 use crate::friction::patches::solve::stage::{Left, Visits, solve_stage};
@@ -66,16 +66,16 @@ pub(super) struct CoupledPatch {
 impl CoupledPatch {
     /// A patch with its friction of the last step; none where nothing it touches can move.
     pub(super) fn new(
-        (number, patch, tolerance_n): (u32, &ContactPatch, f64),
+        (patch, detail, tolerance_n): (&ContactPatch, &PatchDetail, f64),
         (bodies, nodal): (&[Body], &Nodal),
         sides: [Option<NodalSide>; 2],
         dt_s: f64,
     ) -> Option<Self> {
-        let (axes, surface) = (patch.axes, patch.surface);
+        let (axes, surface) = (detail.axes, detail.surface);
         let [own, other] = [patch.owner, patch.target].map(|block| &bodies[block.index()]);
         let arms = [patch.center - own.center, patch.center - other.center];
         let mut found = Self {
-            patch: number,
+            patch: detail.patch,
             owner: patch.owner,
             target: patch.target,
             axes,
@@ -96,7 +96,7 @@ impl CoupledPatch {
             found.flexibility += Mat3::from_diagonal_element(REGULAR * found.flexibility.trace());
         }
         found.stiffness = found.flexibility.try_inverse().filter(|a| a.iter().all(|x| x.is_finite()))?;
-        if let Some(old) = &patch.previous {
+        if let Some(old) = &detail.previous {
             let twist = old.torque_n_m / surface.radius_m;
             found.force = Vec3::new(axes[0].dot(&old.force_n), axes[1].dot(&old.force_n), twist);
         }
@@ -164,14 +164,6 @@ impl CoupledPatch {
                 nodal.push(side, &self.force, sign);
             }
         }
-    }
-
-    /// Friction of a patch that is [slight](super::patch::PatchSummary::is_slight): it opposes the slip of blocks that move as a whole.
-    pub(super) fn slight_friction(&mut self, bodies: &[Body]) {
-        let of = |block: BlockId, k: usize| self.slip_of(&bodies[block.index()], &self.arms[k]);
-        let slip = of(self.owner, 0) - of(self.target, 1);
-        self.force = self.surface.held_back(-(self.stiffness * slip));
-        self.first = self.force;
     }
 
     /// Turn of the owner against the target about the normal in the step, at the mean of the spins at both ends.

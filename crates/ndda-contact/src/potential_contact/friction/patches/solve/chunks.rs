@@ -42,11 +42,7 @@ pub(crate) struct Division {
 
 impl Division {
     /// Divides blocks for these patches: numbers of patches, and the blocks of each that may move, ascending by the first. Puts them in the order of groups.
-    pub(crate) fn divide(
-        &mut self,
-        patches: &mut [u32],
-        blocks_of: impl Fn(u32) -> [BlockId; 2],
-    ) {
+    pub(crate) fn divide(&mut self, patches: &mut [u32], blocks_of: impl Fn(u32) -> [BlockId; 2]) {
         self.starts.clear();
         let chunks = (patches.len() / CHUNK_PATCHES).min(MOST_CHUNKS);
         if chunks < FEWEST_CHUNKS {
@@ -69,7 +65,8 @@ impl Division {
         for &patch in patches {
             let [a, b] = self.chunks_of(blocks_of(patch)).map(usize::from);
             if self.colours[a * chunks + b] == u8::MAX {
-                let colour = if a == b { WITHIN } else { (self.taken[a] | self.taken[b]).trailing_ones() as u8 };
+                let colour =
+                    if a == b { WITHIN } else { (self.taken[a] | self.taken[b]).trailing_ones() as u8 };
                 self.taken[a] |= 1 << colour;
                 self.taken[b] |= 1 << colour;
                 self.colours[a * chunks + b] = colour;

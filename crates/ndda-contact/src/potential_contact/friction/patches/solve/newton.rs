@@ -119,7 +119,8 @@ impl Newton {
         let change = |patch: &mut CoupledPatch, place: &mut Place| {
             let row = &self.rows[patch.row as usize];
             let slips = row.slip_before + patch.slip(place);
-            place.found().sum += (patch.force - row.before).dot(&slips) - patch.tolerance_n * slips.abs().sum();
+            place.found().sum +=
+                (patch.force - row.before).dot(&slips) - patch.tolerance_n * slips.abs().sum();
         };
         each_patch(patches, motion, true, change).sum <= 0.0
     }

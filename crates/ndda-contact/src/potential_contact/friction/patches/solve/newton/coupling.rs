@@ -59,9 +59,8 @@ impl Coupling {
         mut tell: impl FnMut(Places),
     ) {
         let bodies = &*motion.bodies;
-        let moves = |patch: &CoupledPatch, k: usize| {
-            (!patch.is_held(k, bodies)).then_some(patch.blocks()[k].index())
-        };
+        let moves =
+            |patch: &CoupledPatch, k: usize| (!patch.is_held(k, bodies)).then_some(patch.blocks()[k].index());
         let Self { answers, sides, slips, found, velocities, starts } = self;
         starts.clear();
         starts.resize(bodies.len() + 1, 0);
@@ -119,8 +118,7 @@ impl Coupling {
     pub(super) fn answer(&mut self, motion: &Motion, time_s: f64, friction: &[Vec3]) {
         let Self { answers, sides, slips, found, velocities, .. } = self;
         let (blocks, columns) = motion.nodal.blocks();
-        let scene =
-            AnswerScene { sides, slips, blocks, columns, part: time_s / motion.dt_s, friction };
+        let scene = AnswerScene { sides, slips, blocks, columns, part: time_s / motion.dt_s, friction };
         scene.answer(answers, [0; 2], (&mut found[..], &mut velocities[..]));
     }
 
