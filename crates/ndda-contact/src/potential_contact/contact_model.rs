@@ -130,7 +130,9 @@ impl ContactModel for PotentialContact {
         }
         if let Some(scene) = &patches {
             report.friction_left_m_s = self.faces.find(scene, &self.push_n, &mut self.forces, history);
-            searched_friction::add_all(output.force, &self.push_n);
+            if asks_nodes {
+                searched_friction::add_all(output.force, &self.push_n);
+            }
             let scatter = ScatterScene { forces: &self.forces, position: Some(input.position), ..base };
             searched_friction::add(&scatter, &self.faces, output);
         }

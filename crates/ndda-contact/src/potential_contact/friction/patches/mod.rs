@@ -119,6 +119,8 @@ pub(crate) struct FrictionPatches {
     /// One for each patch whose friction is searched for, and for their facets the mean square distance of points from the facet's own centre of pressure [m²].
     details: Vec<PatchDetail>,
     own_m2: Vec<f64>,
+    /// Whether others have friction.
+    has_slight: bool,
     coupled: Vec<CoupledPatch>,
     /// Their sides on blocks that deform.
     sides: Vec<[Option<NodalSide>; 2]>,
@@ -181,7 +183,9 @@ impl FrictionPatches {
         tolerance.find(&mut self.summaries, scene.input.bodies, &mut self.most_n);
         self.find_details(scene, forces, history);
         self.advance_bodies(scene);
-        self.add_slight_friction(scene, forces);
+        if self.has_slight {
+            self.add_slight_friction(scene, forces);
+        }
     }
 
     /// Finds the friction of patches that are not slight, adds it to the facets' forces, and takes over what faces remember; `push` are the other forces of
@@ -239,7 +243,8 @@ impl FrictionPatches {
 
     /// Finds what is to be known of patches whose friction is searched for.
     fn find_details(&mut self, scene: &PatchScene, forces: &[FacetForce], history: &ContactHistory) {
-        let Self { patches, summaries, runs, order, details, own_m2, .. } = self;
+        let Self { patches, summaries, runs, order, details, own_m2, has_slight, .. } = self;
+        *has_slight = false;
         details.clear();
         let mut end = 0;
         for (number, patch) in (0..).zip(&mut *patches) {
@@ -247,6 +252,8 @@ impl FrictionPatches {
                 end += runs[number as usize].places.len() as u32;
                 patch.detail = Some(details.len() as u32);
                 details.push(PatchDetail { patch: number, end, ..PatchDetail::default() });
+            } else {
+                *has_slight |= summaries[number as usize].has_friction;
             }
         }
         own_m2.resize(end as usize, 0.0);
@@ -287,24 +294,6 @@ impl FrictionPatches {
             }
         };
         bodies.par_iter_mut().enumerate().with_min_len(GRAIN_BODIES).for_each(advance);
-    }
-
-    /// Finds the friction of slight patches, and adds it to their facets.
-    fn add_slight_friction(&mut self, scene: &PatchScene, forces: &mut [FacetForce]) {
-        let Self { patches, bodies, places, .. } = self;
-        let is_slight = |patch: &ContactPatch| patch.has_friction() && patch.detail.is_none();
-        patches.par_iter_mut().with_min_len(GRAIN_PATCHES).for_each(|patch| {
-            if is_slight(patch) {
-                patch.find_slight_friction(bodies, scene.input.dt_s);
-            }
-        });
-        let each = forces.par_iter_mut().enumerate().zip(&places[..]).with_min_len(GRAIN_PATCHES);
-        each.for_each(|((t, force), place)| {
-            let patch = &patches[place.patch as usize];
-            if is_slight(patch) && scene.sums(t as u32).pressure > 0.0 {
-                patch.spread_slight_to(force, (scene, t as u32));
-            }
-        });
     }
 
     /// Whether blocks that deform have friction.

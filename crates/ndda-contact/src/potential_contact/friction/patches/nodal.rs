@@ -305,20 +305,20 @@ impl BlockSides {
 impl NodalSide {
     /// Adds what a force changes the velocities of its block by, the first of the columns.
     pub(super) fn push(&self, columns: &mut [Vec3], force: &Vec3, part: f64) {
-        let (velocity, answers) = columns.split_at_mut(self.rows as usize);
-        self.answer(velocity, answers, force, part);
-    }
-
-    /// Adds what a force changes velocities of its block by, from the columns after the first.
-    pub(super) fn answer(&self, velocity: &mut [Vec3], answers: &[Vec3], force: &Vec3, part: f64) {
         let rows = self.rows as usize;
-        let start = 3 * self.place as usize * rows;
+        let (velocity, answers) = columns.split_at_mut(rows);
+        let start = self.column(0).start - rows;
         let (first, rest) = answers[start..start + 3 * rows].split_at(rows);
         let (second, third) = rest.split_at(rows);
         let force = part * force;
         for (((v, a), b), c) in velocity.iter_mut().zip(first).zip(second).zip(third) {
             *v += force.x * a + force.y * b + force.z * c;
         }
+    }
+
+    /// Its three columns.
+    pub(super) fn columns<'a>(&self, columns: &'a [Vec3]) -> &'a [Vec3] {
+        &columns[self.column(0).start..self.column(2).end]
     }
 
     /// Pᵀ v, from the sides of its block and their columns.

@@ -73,7 +73,7 @@ pub(super) struct PatchFacets {
 pub(super) struct ContactPatch {
     pub owner: BlockId,
     pub target: BlockId,
-    has_law: bool,
+    pub has_law: bool,
     /// ∫ φ dA and its centre; nothing else counts where there is no pressure.
     pub pressure: f64,
     pub center: Vec3,
@@ -85,12 +85,12 @@ pub(super) struct ContactPatch {
     /// Its place among those whose friction is searched for; none where it is slight.
     pub detail: Option<u32>,
     /// Force [N] on it, and torque [N m] about the centre, but for its own friction.
-    load_n: Vec3,
-    load_torque_n_m: Vec3,
+    pub load_n: Vec3,
+    pub load_torque_n_m: Vec3,
     /// Whether one of both blocks deforms.
     pub deforms: bool,
     /// Slip that loads other than contact bring within a step from rest: less is not resolved [m].
-    least_slip_m: f64,
+    pub least_slip_m: f64,
     /// Turn about the normal in this step, where it is found from the motion of the blocks.
     pub turn_rad: Option<f64>,
     /// Friction of this step [N, N m], and whether it is all that there may be.

@@ -4,14 +4,35 @@
 //! or with what stops the slip within the step.
 
 use ndda_mesh::{BlockId, Vec3};
+use rayon::prelude::*;
 
 use crate::friction::facet::FacetForce;
-use crate::friction::patches::PatchScene;
 use crate::friction::patches::patch::ContactPatch;
+use crate::friction::patches::{FrictionPatches, GRAIN_PATCHES, PatchScene};
 use crate::model::Body;
 
 /// Friction that is all there may be, but for so much.
 const SLIDES: f64 = 1.0 - 1e-6;
+
+impl FrictionPatches {
+    /// Finds the friction of slight patches, and adds it to their facets.
+    pub(super) fn add_slight_friction(&mut self, scene: &PatchScene, forces: &mut [FacetForce]) {
+        let Self { patches, bodies, places, .. } = self;
+        let is_slight = |patch: &ContactPatch| patch.has_friction() && patch.detail.is_none();
+        patches.par_iter_mut().with_min_len(GRAIN_PATCHES).for_each(|patch| {
+            if is_slight(patch) {
+                patch.find_slight_friction(bodies, scene.input.dt_s);
+            }
+        });
+        let each = forces.par_iter_mut().enumerate().zip(&places[..]).with_min_len(GRAIN_PATCHES);
+        each.for_each(|((t, force), place)| {
+            let patch = &patches[place.patch as usize];
+            if is_slight(patch) && scene.sums(t as u32).pressure > 0.0 {
+                patch.spread_slight_to(force, (scene, t as u32));
+            }
+        });
+    }
+}
 
 impl ContactPatch {
     /// Finds its friction, from the velocities of all blocks; none where neither of both can move.

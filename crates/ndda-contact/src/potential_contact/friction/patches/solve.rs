@@ -17,9 +17,9 @@ use ndda_mesh::{BlockId, Mat3, Vec3};
 use crate::friction::patches::limit_surface::{LimitSurface, solved};
 use crate::friction::patches::nodal::{Nodal, NodalSide};
 use crate::friction::patches::patch::{ContactPatch, PatchDetail};
-use crate::friction::patches::solve::chunks::{Division, Place};
+use crate::friction::patches::solve::chunks::{Division, Left, Place};
 use crate::friction::patches::solve::newton::Newton;
-use crate::friction::patches::solve::stage::{Left, Visits, solve_stage};
+use crate::friction::patches::solve::stage::{Visits, solve_stage};
 use crate::model::Body;
 
 /// γ of Alexander's method.

@@ -9,7 +9,6 @@ use std::sync::{Mutex, PoisonError};
 use ndda_mesh::{BlockId, Vec3};
 
 use crate::friction::patches::nodal::BlockSides;
-use crate::friction::patches::solve::stage::Left;
 use crate::friction::patches::solve::{CoupledPatch, Motion};
 use crate::model::Body;
 
@@ -116,6 +115,13 @@ pub(super) struct Chunk<'a> {
     now: u32,
     /// What visits have found.
     pub found: Found,
+}
+
+/// Largest change of a visit: of a slip [m/s], and of friction as a multiple of what does not matter; none where no patch changed by more than that.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Left {
+    pub slip_m_s: f64,
+    pub times: f64,
 }
 
 /// What visits have found.

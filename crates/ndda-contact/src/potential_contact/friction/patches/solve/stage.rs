@@ -1,6 +1,6 @@
 //! One of both minima: visits of patch after patch, and Newton's method for all where these take long.
 
-use crate::friction::patches::solve::chunks::each_patch;
+use crate::friction::patches::solve::chunks::{Left, each_patch};
 use crate::friction::patches::solve::newton::Newton;
 use crate::friction::patches::solve::{CoupledPatch, GAMMA, Motion, Search};
 
@@ -92,13 +92,6 @@ pub(super) fn solve_stage(patches: &mut [CoupledPatch], motion: &mut Motion, new
         }
     }
     Search { visits: motion.visits.count, left_m_s: left.slip_m_s }
-}
-
-/// Largest change of a visit: of a slip [m/s], and of friction as a multiple of what does not matter; none where no patch changed by more than that.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Left {
-    pub slip_m_s: f64,
-    pub times: f64,
 }
 
 /// A sweep over all patches that are to be visited, to and fro by turns.
