@@ -48,10 +48,10 @@ pub struct SpringSlip {
 
 /// Response of deformable blocks to forces within a step, which friction on velocities needs from the solver.
 pub trait Deformation: Sync {
-    /// Answers in place for all blocks at once. `columns` has an entry for each block, empty where nothing is asked, with columns of one
+    /// Answers in place for some blocks, ascending, at once. `columns` has an entry for each of them, with columns of one
     /// vector per node of the block. The first column is the force of contact on each node [N] and becomes the velocity at the end of the step under all
     /// loads [m/s]; each other one is a force that acts all through the step, and becomes what it adds to that velocity.
-    fn answer(&self, columns: &mut [Vec<Vec3>]);
+    fn answer(&self, blocks: &[BlockId], columns: &mut [Vec<Vec3>]);
 
     /// Gives the masses of the nodes of a block [kg] to `work`.
     fn masses(&self, block: BlockId, work: &mut dyn FnMut(&[f64]));

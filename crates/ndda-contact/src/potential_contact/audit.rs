@@ -17,7 +17,7 @@ use super::{PotentialContact, plan};
 
 impl ContactAudit for PotentialContact {
     fn each_work(&mut self, blocks: &BlockSet, moved: &[Vec3], add: &mut dyn FnMut(BlockId, BlockId, f64)) {
-        let (integrals, forces) = (&self.integrals, &self.forces);
+        let (integrals, forces, outcomes) = (&self.integrals, &self.forces, &self.outcomes);
         let taken_pa = self.damping.as_deref().map_or(&[][..], ContactDamping::taken_pa);
         let touching = integrals.touching();
         let work_of = |(t, work_j): (usize, &mut f64)| {
@@ -25,7 +25,8 @@ impl ContactAudit for PotentialContact {
             let found = (integrals.overlaps_of(touch), integrals.sums_of(touch));
             let push = taken_pa.get(t).map_or(forces[t].push, |taken_pa| forces[t].push + taken_pa);
             // What dilation takes from friction is stored in contact.
-            *work_j = push.dot(&relative_motion(touch, found, (blocks, moved))) - forces[t].dilation_work_j;
+            let dilation_work_j = outcomes.get(t).map_or(0.0, |outcome| outcome.dilation_work_j);
+            *work_j = push.dot(&relative_motion(touch, found, (blocks, moved))) - dilation_work_j;
         };
         self.work_of_facet.resize(touching.len(), 0.0);
         for_each_facet(&mut self.work_of_facet, work_of);
@@ -65,8 +66,8 @@ impl ContactAudit for PotentialContact {
         if self.joints.is_none() {
             return;
         }
-        for (touch, force) in self.integrals.touching().iter().zip(&self.forces) {
-            if let Some(spring) = &force.spring {
+        for (touch, outcome) in self.integrals.touching().iter().zip(&self.outcomes) {
+            if let Some(spring) = &outcome.spring {
                 add(touch.owner, touch.target, spring);
             }
         }

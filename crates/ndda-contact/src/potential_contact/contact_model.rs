@@ -1,11 +1,12 @@
 //! The contact potential as a contact model.
 
-use ndda_mesh::BlockId;
+use ndda_mesh::{BlockId, Vec3};
 use ndda_ranks::ExactSum;
 
 use crate::assembly::join_if::join_if;
 use crate::assembly::nodal_forces::{self, ScatterScene};
 use crate::assembly::overlap_parts::OverlapParts;
+use crate::assembly::searched_friction;
 use crate::contact_model::ContactModel;
 use crate::friction::bond;
 use crate::friction::facet::FacetScene;
@@ -71,6 +72,7 @@ impl ContactModel for PotentialContact {
         };
         let rows = FacetRows {
             forces: &mut self.forces,
+            outcomes: &mut self.outcomes,
             on_host: &mut self.on_host,
             state: &mut self.state_of_facet,
         };
@@ -83,35 +85,60 @@ impl ContactModel for PotentialContact {
         let place = || place_forces(rows, &facets, integrals, (left_pa, dashpot_n), &self.hulls);
         join_if(integrals.touching().len() > GRAIN_FACETS, place, sort);
         if let Some(damping) = damping {
-            report.dashpot_error_m_s = damping.error_m_s(&self.integrals, &self.forces, input.dt_s);
-            damping.remember_dashpots(input, &self.integrals, &self.forces, history);
+            report.dashpot_error_m_s =
+                damping.error_m_s(&self.integrals, (&self.forces, &self.outcomes), input.dt_s);
+            damping.remember_dashpots(input, &self.integrals, (&self.forces, &self.outcomes), history);
         }
-        if let Some(joints) = self.joints.as_ref().filter(|_| has_friction) {
-            let bodies = damping.map_or(input.bodies, ContactDamping::bodies);
-            let input = &ContactInput { bodies, ..*input };
-            let (integrals, bonds) = (&self.integrals, &self.bond_forces[..]);
-            let scene = PatchScene { input, integrals, joints, hulls: &self.hulls, bonds };
-            report.friction_left_m_s = self.faces.add(&scene, &mut self.forces, history);
+        let bodies = damping.map_or(input.bodies, ContactDamping::bodies);
+        let patch_input = ContactInput { bodies, ..*input };
+        let patches = self.joints.as_ref().filter(|_| has_friction).map(|joints| PatchScene {
+            input: &patch_input,
+            integrals: &self.integrals,
+            joints,
+            hulls: &self.hulls,
+            bonds: &self.bond_forces,
+        });
+        if let Some(scene) = &patches {
+            self.faces.begin(scene, &mut self.forces, history);
         }
-        let scene = ScatterScene {
+        let base = ScatterScene {
             blocks: input.blocks,
-            position: (has_friction || damping.is_some()).then_some(input.position),
+            position: damping.is_some().then_some(input.position),
             tilt_n_m,
             integrals: &self.integrals,
             adjacency: &self.adjacency,
             hulls: &self.hulls,
-            forces: &self.forces,
+            forces: &[],
             on_host: &self.on_host,
             stiffness_pa: &self.penalty_of_facet,
             curvature_pa_m: &self.curvature_of_facet,
         };
+        let scatter = ScatterScene { forces: &self.forces, ..base };
+        self.push_n.clear();
+        let asks_nodes = patches.as_ref().is_some_and(|scene| self.faces.asks_nodes(scene));
+        if asks_nodes {
+            self.push_n.resize(input.position.len(), Vec3::zeros());
+        }
+        let mut into = ContactOutput {
+            force: if asks_nodes { &mut self.push_n } else { &mut *output.force },
+            friction_force: &mut *output.friction_force,
+            stiffness: &mut *output.stiffness,
+        };
         match input.ranks {
-            None => nodal_forces::add(&scene, output),
-            Some(ranks) => self.shared_forces.add(ranks, &scene, output)?,
+            None => nodal_forces::add(&scatter, &mut into),
+            Some(ranks) => self.shared_forces.add(ranks, &scatter, &mut into)?,
+        }
+        if let Some(scene) = &patches {
+            report.friction_left_m_s = self.faces.find(scene, &self.push_n, &mut self.forces, history);
+            if asks_nodes {
+                searched_friction::add_all(output.force, &self.push_n);
+            }
+            let scatter = ScatterScene { forces: &self.forces, position: Some(input.position), ..base };
+            searched_friction::add(&scatter, &self.faces, output);
         }
         bond::add_forces(input.blocks, &self.bond_forces, output);
         if !self.openings.is_empty() {
-            let works = self.forces.iter().map(|force| force.dilation_work_j);
+            let works = self.outcomes.iter().map(|outcome| outcome.dilation_work_j);
             report.dilation_work_j = works.collect::<ExactSum>().value();
         }
         if self.joints.is_some() {

@@ -9,7 +9,7 @@ use crate::affine::surface::BlockFaces;
 use crate::assembly::overlap_parts::OverlapParts;
 use crate::assembly::tangent::{self, Target};
 use crate::friction::bond_formation;
-use crate::friction::facet::{FacetForce, FacetScene};
+use crate::friction::facet::{FacetForce, FacetOutcome, FacetScene};
 use crate::friction::law_table::FrictionLawTable;
 use crate::friction::openings::{self, Moment};
 use crate::integration::integrals::Integrals;
@@ -143,8 +143,8 @@ impl PotentialContact {
         self.new_state.clear();
         let scene = FacetScene { input, joints: self.joints.as_ref(), history, elastic_pa: self.penalty_pa };
         let len = history.law_state_len as usize;
-        for (t, (touch, force)) in self.integrals.touching().iter().zip(&self.forces).enumerate() {
-            if let Some((shear_n, broken)) = force.memory {
+        for (t, (touch, outcome)) in self.integrals.touching().iter().zip(&self.outcomes).enumerate() {
+            if let Some((shear_n, broken)) = outcome.memory {
                 self.new_state.extend_from_slice(&self.state_of_facet[t * len..(t + 1) * len]);
                 self.new_facets.push(FacetMemory {
                     facet: touch.triangle,
@@ -229,16 +229,17 @@ impl PotentialContact {
     }
 }
 
-/// Output of [`place_forces`]: forces of facets, their reactions on host tetrahedra, and the numbers of the laws.
+/// Output of [`place_forces`]: forces of facets, what laws that act on facets find, reactions on host tetrahedra, and the numbers of the laws.
 pub(super) struct FacetRows<'a> {
     pub(super) forces: &'a mut Vec<FacetForce>,
+    pub(super) outcomes: &'a mut Vec<FacetOutcome>,
     pub(super) on_host: &'a mut Vec<OnTarget>,
     pub(super) state: &'a mut Vec<f64>,
 }
 
 /// The forces of all facets, and what hosts feel of them.
 pub(super) fn place_forces(
-    FacetRows { forces, on_host, state }: FacetRows,
+    FacetRows { forces, outcomes, on_host, state }: FacetRows,
     scene: &FacetScene,
     integrals: &Integrals,
     (penalty_of_facet, dashpot_n): (&[f64], &[Vec3]),
@@ -248,16 +249,23 @@ pub(super) fn place_forces(
     let state_len = scene.history.law_state_len as usize;
     forces.resize(touching.len(), FacetForce::default());
     state.resize(touching.len() * state_len, 0.0);
-    let place = |force: &mut FacetForce, t: usize, state: &mut [f64]| {
+    let has_laws = state_len > 0 || scene.joints.is_some_and(|joints| !joints.act_on_faces_only());
+    outcomes.resize(if has_laws { touching.len() } else { 0 }, FacetOutcome::default());
+    let place = |force: &mut FacetForce, t: usize, found: (&mut FacetOutcome, &mut [f64])| {
         let (overlaps, sums) = (integrals.overlaps_of(&touching[t]), integrals.sums_of(&touching[t]));
         let pushes = (t, penalty_of_facet[t], dashpot_n.get(t));
-        *force = scene.force(&touching[t], overlaps, sums, pushes, state);
+        *force = scene.force(&touching[t], overlaps, sums, pushes, found);
     };
     if state_len > 0 {
-        let entries = forces.par_iter_mut().zip(state.par_chunks_mut(state_len)).enumerate();
-        entries.with_min_len(GRAIN_FACETS / 2).for_each(|(t, (force, state))| place(force, t, state));
+        let entries = forces.par_iter_mut().zip(outcomes).zip(state.par_chunks_mut(state_len)).enumerate();
+        entries
+            .with_min_len(GRAIN_FACETS / 2)
+            .for_each(|(t, ((force, outcome), state))| place(force, t, (outcome, state)));
+    } else if has_laws {
+        let entries = forces.par_iter_mut().zip(outcomes).enumerate().with_min_len(GRAIN_FACETS / 2);
+        entries.for_each(|(t, (force, outcome))| place(force, t, (outcome, &mut [])));
     } else {
-        for_each_facet(forces, |(t, force)| place(force, t, &mut []));
+        for_each_facet(forces, |(t, force)| place(force, t, (&mut FacetOutcome::default(), &mut [])));
     }
     on_host.clear();
     if hulls.count_affine() > 0 {

@@ -36,7 +36,7 @@ pub use {
     restitution::{Restitution, RestitutionTable},
 };
 
-use ndda_mesh::BlockSet;
+use ndda_mesh::{BlockSet, Vec3};
 
 use crate::affine::convex_target::ConvexBlocks;
 use crate::assembly::adjacency::BlockContactIndex;
@@ -46,7 +46,7 @@ use crate::assembly::shared_forces::SharedForces;
 use crate::broad_phase::candidates::Candidates;
 use crate::broad_phase::finder::BroadPhase;
 use crate::friction::bond::BondForce;
-use crate::friction::facet::FacetForce;
+use crate::friction::facet::{FacetForce, FacetOutcome};
 use crate::friction::openings::Openings;
 use crate::friction::patches::FrictionPatches;
 use crate::integration::frames::Frames;
@@ -91,6 +91,8 @@ pub struct PotentialContact {
     adjacency: BlockContactIndex,
     frames: Frames,
     forces: Vec<FacetForce>,
+    /// One for each of them where laws act on facets.
+    outcomes: Vec<FacetOutcome>,
     /// Forces of facets on host tetrahedra: a block need not look for the hits, which are far away in memory.
     on_host: Vec<OnTarget>,
     penalty_of_facet: Vec<f64>,
@@ -108,6 +110,8 @@ pub struct PotentialContact {
     work_of_facet: Vec<f64>,
     /// By how much facets are moved out before they are clipped.
     openings: Openings,
+    /// Forces on nodes but for friction that is searched for, where blocks answer to them [N].
+    push_n: Vec<Vec3>,
     /// What ranks hand each other of the forces on nodes.
     shared_forces: SharedForces,
 }
@@ -128,6 +132,7 @@ impl PotentialContact {
             adjacency: BlockContactIndex::default(),
             frames: Frames::default(),
             forces: Vec::new(),
+            outcomes: Vec::new(),
             on_host: Vec::new(),
             penalty_of_facet: Vec::new(),
             curvature_of_facet: Vec::new(),
@@ -140,6 +145,7 @@ impl PotentialContact {
             state_of_facet: Vec::new(),
             work_of_facet: Vec::new(),
             openings: Openings::default(),
+            push_n: Vec::new(),
             shared_forces: SharedForces::default(),
         }
     }

@@ -5,7 +5,6 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 use ndda_contact::Deformation;
 use ndda_mesh::{BlockId, Vec3};
 use ndda_ranks::{Communicator, Gathered, Packer, RanksError, Topic, Unpacker, divide, share};
-use rayon::prelude::*;
 
 use crate::bodies::body::{Body, Motion};
 use crate::bodies::congruent_groups::Nodes;
@@ -30,16 +29,31 @@ impl<'a> StepDeformation<'a> {
         self.stopped.into_inner()
     }
 
-    /// The answers of the blocks that are asked for.
+    /// The answers of the blocks that are asked for, whose bodies begin with that of number `first`.
     fn answer_some(
         &self,
+        first: usize,
         bodies: &mut [Body],
-        columns: &mut [Vec<Vec3>],
-        asked: impl Fn(usize) -> bool + Sync,
+        (blocks, columns): (&[BlockId], &mut [Vec<Vec3>]),
+        asked: &(impl Fn(usize) -> bool + Sync),
     ) {
-        let each = bodies.par_iter_mut().zip(columns).enumerate();
-        each.filter(|(block, (_, columns))| !columns.is_empty() && asked(*block))
-            .for_each(|(block, (body, columns))| self.answer_block(BlockId(block as u32), body, columns));
+        match blocks {
+            [] => {}
+            [block] if asked(block.index()) => {
+                self.answer_block(*block, &mut bodies[block.index() - first], &mut columns[0]);
+            }
+            [_] => {}
+            many => {
+                let (head, tail) = many.split_at(many.len() / 2);
+                let (of_head, of_tail) = columns.split_at_mut(head.len());
+                let middle = tail[0].index();
+                let (own, others) = bodies.split_at_mut(middle - first);
+                rayon::join(
+                    || self.answer_some(first, own, (head, of_head), asked),
+                    || self.answer_some(middle, others, (tail, of_tail), asked),
+                );
+            }
+        }
     }
 
     /// Each rank asks its share of the blocks. One that fails is asked by all, so that all have its error.
@@ -47,18 +61,19 @@ impl<'a> StepDeformation<'a> {
         &self,
         ranks: &dyn Communicator,
         bodies: &mut [Body],
-        columns: &mut [Vec<Vec3>],
+        (blocks, columns): (&[BlockId], &mut [Vec<Vec3>]),
     ) -> Result<(), RanksError> {
         let shapes = &self.simulation.problem.shapes;
-        let weight = |(body, columns): (&Body, &Vec<Vec3>)| {
-            columns.len() as u64 * (1 + (shapes[body.shape].unknowns.len() as u64).isqrt())
+        let weight = |(block, columns): (&BlockId, &Vec<Vec3>)| {
+            let shape = &shapes[bodies[block.index()].shape];
+            columns.len() as u64 * (1 + (shape.unknowns.len() as u64).isqrt())
         };
-        let starts = divide(bodies.iter().zip(&*columns).map(weight), ranks.size());
+        let starts = divide(blocks.iter().zip(&*columns).map(weight), ranks.size());
         let own = share(&starts, ranks.rank());
-        self.answer_some(bodies, columns, |block| own.contains(&block));
+        self.answer_some(0, bodies, (&blocks[own.clone()], &mut columns[own.clone()]), &|_| true);
         let (mut packer, mut all) = (Packer::default(), Gathered::default());
-        for (body, columns) in bodies[own.clone()].iter().zip(&columns[own]).filter(|each| !each.1.is_empty())
-        {
+        for (block, columns) in blocks[own.clone()].iter().zip(&columns[own]) {
+            let body = &bodies[block.index()];
             packer.put(&u8::from(body.error.is_none()));
             if body.error.is_none() {
                 packer.put_each(columns, |v| <[f64; 3]>::from(*v));
@@ -68,16 +83,16 @@ impl<'a> StepDeformation<'a> {
         let mut failed = vec![false; bodies.len()];
         for rank in (0..ranks.size()).filter(|rank| *rank != ranks.rank()) {
             let mut found = Unpacker::new(all.of(rank));
-            for block in share(&starts, rank).filter(|block| !columns[*block].is_empty()).collect::<Vec<_>>()
-            {
-                failed[block] = found.take::<u8>() == 0;
-                if !failed[block] {
-                    found.take_into(&mut columns[block], |v: [f64; 3]| Vec3::from(v));
+            for slot in share(&starts, rank) {
+                let failed = &mut failed[blocks[slot].index()];
+                *failed = found.take::<u8>() == 0;
+                if !*failed {
+                    found.take_into(&mut columns[slot], |v: [f64; 3]| Vec3::from(v));
                 }
             }
         }
         if failed.contains(&true) {
-            self.answer_some(bodies, columns, |block| failed[block]);
+            self.answer_some(0, bodies, (blocks, columns), &|block| failed[block]);
         }
         Ok(())
     }
@@ -122,12 +137,12 @@ impl<'a> StepDeformation<'a> {
 }
 
 impl Deformation for StepDeformation<'_> {
-    fn answer(&self, columns: &mut [Vec<Vec3>]) {
+    fn answer(&self, blocks: &[BlockId], columns: &mut [Vec<Vec3>]) {
         let mut bodies = self.bodies.lock().unwrap_or_else(PoisonError::into_inner);
         match self.simulation.ranks.partners() {
-            None => self.answer_some(&mut bodies, columns, |_| true),
+            None => self.answer_some(0, &mut bodies, (blocks, columns), &|_| true),
             Some(ranks) => {
-                if let Err(error) = self.answer_on_ranks(ranks, &mut bodies, columns) {
+                if let Err(error) = self.answer_on_ranks(ranks, &mut bodies, (blocks, columns)) {
                     self.stopped.get_or_init(|| error);
                 }
             }

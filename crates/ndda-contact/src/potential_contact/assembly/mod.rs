@@ -10,6 +10,7 @@ pub(crate) mod nodal_forces;
 pub(crate) mod overlap_parts;
 mod overlap_volumes;
 pub(crate) mod report;
+pub(crate) mod searched_friction;
 pub(crate) mod shared_forces;
 mod shared_overlaps;
 pub(crate) mod tangent;

@@ -30,18 +30,23 @@ pub struct FacetForce {
     pub shear_slope: f64,
     /// Whether its friction is below what it may be.
     pub sticks: bool,
-    /// Slip and work of the shear spring in the step, where there is one.
-    pub spring: Option<SpringSlip>,
-    /// Shear force in the facet's basis [N], and whether cohesion is gone: what is kept where there is friction and contact.
-    pub memory: Option<([f64; 2], bool)>,
-    /// Energy that contact has taken up because the facet was moved out since it was clipped last [J].
-    pub dilation_work_j: f64,
     /// Whether there is a force at all.
     pub touches: bool,
     /// Centre of pressure [m].
     pub center: Vec3,
     /// Its number among [`Candidates::facets`](crate::broad_phase::Candidates::facets).
     pub facet: u32,
+}
+
+/// What a law that acts on facets finds beside the force.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct FacetOutcome {
+    /// Slip and work of the shear spring in the step, where there is one.
+    pub spring: Option<SpringSlip>,
+    /// Shear force in the facet's basis [N], and whether cohesion is gone: what is kept where there is friction and contact.
+    pub memory: Option<([f64; 2], bool)>,
+    /// Energy that contact has taken up because the facet was moved out since it was clipped last [J].
+    pub dilation_work_j: f64,
 }
 
 /// Input of the evaluation of a facet.
@@ -95,8 +100,9 @@ impl FacetScene<'_> {
         hits: &[OverlapPair],
         sums: &FacetMoments,
         (number, penalty_pa, dashpot_n): (usize, f64, Option<&Vec3>),
-        state: &mut [f64],
+        (outcome, state): (&mut FacetOutcome, &mut [f64]),
     ) -> FacetForce {
+        *outcome = FacetOutcome::default();
         let mut force = FacetForce { facet: touch.facet, ..FacetForce::default() };
         if sums.pressure <= 0.0 {
             return force;
@@ -111,7 +117,7 @@ impl FacetScene<'_> {
                 touch,
                 (hits, sums),
                 (penalty_pa, dashpot_n, (&corners, &normal)),
-                (&mut force, state),
+                (&mut force, outcome, state),
                 number,
             );
         }
@@ -126,7 +132,7 @@ impl FacetScene<'_> {
         touch: &ActiveFacet,
         (hits, sums): (&[OverlapPair], &FacetMoments),
         (penalty_pa, dashpot_n, (corners, normal)): (f64, Option<&Vec3>, (&[Vec3; 3], &Vec3)),
-        (force, state): (&mut FacetForce, &mut [f64]),
+        (force, outcome, state): (&mut FacetForce, &mut FacetOutcome, &mut [f64]),
         number: usize,
     ) {
         let law = joints.law(self.input.blocks, touch.triangle, touch.target);
@@ -142,7 +148,7 @@ impl FacetScene<'_> {
             .flatten();
         if broken == Some(0.0) {
             // The bond carries the shear.
-            (force.sticks, force.memory) = (true, Some((memory.shear_n, false)));
+            (force.sticks, outcome.memory) = (true, Some((memory.shear_n, false)));
             return;
         }
         let mut slip = self.slip(touch, (hits, sums), &basis, penalty_pa);
@@ -162,7 +168,7 @@ impl FacetScene<'_> {
         if law.dilates() {
             let [last_m, now_m] = law.openings_m(memory.state);
             // Force times way, as the push of the step does its work on blocks.
-            force.dilation_work_j = self.elastic_pa * sums.pressure * (now_m - last_m);
+            outcome.dilation_work_j = self.elastic_pa * sums.pressure * (now_m - last_m);
         }
         law.advance(&slip, &mut memory);
         let [x, y] = memory.shear_n;
@@ -180,9 +186,9 @@ impl FacetScene<'_> {
         if force.shear_slope > 0.0 {
             let slip_m = basis[0] * slip.slip_m[0] + basis[1] * slip.slip_m[1];
             let (capacity_n, shear_n) = (law.capacity_n(&slip, &memory), length([x, y]));
-            force.spring = Some(SpringSlip { capacity_n, shear_n, slip_m, slides: !force.sticks });
+            outcome.spring = Some(SpringSlip { capacity_n, shear_n, slip_m, slides: !force.sticks });
         }
-        force.memory = Some((memory.shear_n, memory.broken));
+        outcome.memory = Some((memory.shear_n, memory.broken));
     }
 
     fn slip(

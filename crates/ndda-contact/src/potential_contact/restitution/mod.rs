@@ -46,6 +46,9 @@ pub(crate) struct ContactDamping {
     changes: Vec<Change>,
     /// For each block that deforms one vector per node in each column: its own motion, and how it answers to each of its pairs.
     columns: Vec<Vec<Vec3>>,
+    /// Blocks that have columns, and these while the blocks answer.
+    answering: Vec<BlockId>,
+    answers: Vec<Vec<Vec3>>,
     /// Pairs of each block that have been looked at.
     asked: Vec<usize>,
     /// Elastic push of each touching facet [Pa], and what is left of it.
@@ -74,6 +77,8 @@ impl ContactDamping {
             pairs: Vec::new(),
             changes: Vec::new(),
             columns: Vec::new(),
+            answering: Vec::new(),
+            answers: Vec::new(),
             asked: Vec::new(),
             push_pa: Vec::new(),
             left_pa: Vec::new(),

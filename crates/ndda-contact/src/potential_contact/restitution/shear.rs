@@ -10,7 +10,7 @@
 use ndda_mesh::geometry::triangle_area_vector;
 use ndda_mesh::{BlockId, Mat3, Vec3};
 
-use crate::friction::facet::{FacetForce, STICKS, relative_velocity};
+use crate::friction::facet::{FacetForce, FacetOutcome, STICKS, relative_velocity};
 use crate::friction::law::facet_basis;
 use crate::integration::integrals::Integrals;
 use crate::integration::overlap_pair::ActiveFacet;
@@ -164,13 +164,14 @@ impl ContactDamping {
         &self,
         input: &ContactInput,
         integrals: &Integrals,
-        forces: &[FacetForce],
+        (forces, outcomes): (&[FacetForce], &[FacetOutcome]),
         history: &mut ContactHistory,
     ) {
         for dashpot in &self.dashpots {
             let t = dashpot.facet as usize;
             let (touch, force) = (&integrals.touching()[t], &forces[t]);
-            let Some(([x, y], _)) = force.memory.filter(|_| force.spring.is_some()) else { continue };
+            let Some(outcome) = outcomes.get(t).filter(|outcome| outcome.spring.is_some()) else { continue };
+            let Some(([x, y], _)) = outcome.memory else { continue };
             let corners = input.blocks.triangle_corners(touch.triangle, input.position);
             let basis = facet_basis(&corners, &dashpot.normal);
             let force_n = integrals.sums_of(touch).pressure * force.shear - (x * basis[0] + y * basis[1]);
@@ -184,12 +185,17 @@ impl ContactDamping {
 
     /// By how much damping that the step leaves out lets blocks go too fast, at most [m/s]: blocks that a force drives against a dashpot go as much faster as
     /// it is less than it should be. Where a joint slides, dashpots of shear springs change nothing.
-    pub(crate) fn error_m_s(&self, integrals: &Integrals, forces: &[FacetForce], dt_s: f64) -> f64 {
+    pub(crate) fn error_m_s(
+        &self,
+        integrals: &Integrals,
+        (forces, outcomes): (&[FacetForce], &[FacetOutcome]),
+        dt_s: f64,
+    ) -> f64 {
         let touching = integrals.touching();
         let along = self.dashpots.iter().filter(|dashpot| dashpot.lag > 0.0).filter_map(|dashpot| {
             let t = dashpot.facet as usize;
             let (force, touch): (_, &ActiveFacet) = (&forces[t], &touching[t]);
-            let spring = force.spring.as_ref().filter(|spring| !spring.slides)?;
+            let spring = outcomes.get(t)?.spring.as_ref().filter(|spring| !spring.slides)?;
             let shear_n = integrals.sums_of(touch).pressure * force.shear.norm();
             (shear_n < STICKS * spring.capacity_n).then(|| dashpot.lag * spring.slip_m.norm() / dt_s)
         });

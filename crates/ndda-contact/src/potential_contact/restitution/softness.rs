@@ -1,8 +1,8 @@
 //! How the surfaces of blocks that deform give way to contact within a step.
 
-use ndda_mesh::Vec3;
+use ndda_mesh::{BlockId, Vec3};
 
-use crate::model::ContactInput;
+use crate::model::{ContactInput, Deformation};
 use crate::restitution::ContactDamping;
 use crate::restitution::scene::DampingScene;
 
@@ -28,7 +28,7 @@ impl ContactDamping {
                     }
                 }
             }
-            deformation.answer(&mut self.columns);
+            self.answer(deformation);
         }
         self.asked.clear();
         self.asked.resize(bodies.len(), 1);
@@ -54,6 +54,22 @@ impl ContactDamping {
             }
             pair.softness = softness;
             pair.set_rates(&mut self.points[pair.range()], dt_s, |_| 0.0);
+        }
+    }
+
+    /// Lets the blocks answer that have columns.
+    fn answer(&mut self, deformation: &dyn Deformation) {
+        let Self { columns, answering, answers, .. } = self;
+        answering.clear();
+        answers.clear();
+        for (block, column) in (0..).map(BlockId).zip(&mut *columns).filter(|(_, column)| !column.is_empty())
+        {
+            answering.push(block);
+            answers.push(std::mem::take(column));
+        }
+        deformation.answer(answering, answers);
+        for (block, answer) in answering.iter().zip(answers) {
+            columns[block.index()] = std::mem::take(answer);
         }
     }
 }

@@ -118,20 +118,6 @@ impl LimitSurface {
         force.z.abs() <= HELD * self.most_twist_n * (1.0 - along2)
     }
 
-    /// A force that stops a patch, shortened to one within the limit for sure: the slip that is left keeps the direction of that without it, and
-    /// the force opposes it. Its length is that of friction only to a part of μN.
-    pub(super) fn held_back(&self, stopping: Vec3) -> Vec3 {
-        let along = (stopping.x * stopping.x + stopping.y * stopping.y).sqrt();
-        let load = along / self.most_n + stopping.z.abs() / self.most_twist_n;
-        if load <= 1.0 {
-            stopping
-        } else if load.is_finite() {
-            stopping / load
-        } else {
-            Vec3::zeros()
-        }
-    }
-
     /// Friction on a patch that would slip at s without, and slips at σ = s + A⁻¹ F with it: the σ of least ½ (σ − s)·A (σ − s) + D(σ).
     /// Sought from `start`, which is near σ unless it `is_first`; gives F, to `tolerance_n`: as A + D″ is at least A, the error of F is at most the
     /// residual A (σ − s) + D′. Also gives A + D″ there; none where it sticks.

@@ -3,19 +3,21 @@
 //! A face is a set of boundary triangles in one plane and of one surface. Its contact with another block is a patch, together with a
 //! face of the other block that lies on it (`opposite.rs`), or with a part of either (`parts.rs`): its friction is one force F and one torque T about the
 //! normal, spread over its facets (`spread.rs`), and obeys Coulomb's law point by point (`limit_surface.rs`). The friction of all patches is found
-//! together (`solve.rs`); blocks that deform answer to it at their nodes, as the solver says (`nodal.rs`).
+//! together (`solve.rs`), but for patches that hardly count (`slight.rs`); blocks that deform answer to it at their nodes, as the solver says (`nodal.rs`).
 
+mod detail;
 mod limit_surface;
 pub(crate) mod moments;
 mod nodal;
 mod opposite;
 mod parts;
 mod patch;
+mod slight;
 mod solve;
 mod spread;
 mod tolerance;
 
-use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
+use ndda_mesh::{BlockId, BlockSet, Vec3};
 use rayon::prelude::*;
 
 use crate::affine::convex_target::ConvexBlocks;
@@ -27,10 +29,12 @@ use crate::friction::bond::BondForce;
 use crate::friction::facet::FacetForce;
 use crate::friction::law::FrictionLaw;
 use crate::friction::law_table::FrictionLawTable;
-use crate::friction::patches::nodal::{Nodal, NodalSide, SideScene};
+use crate::friction::patches::detail::{DetailsScene, facets_of};
+use crate::friction::patches::nodal::{Nodal, NodalSide, PatchOn, SideScene};
 use crate::friction::patches::opposite::Opposite;
 use crate::friction::patches::parts::FaceParts;
-use crate::friction::patches::patch::{ContactPatch, Moved, PatchFacets, PatchSummary, Remembered};
+use crate::friction::patches::patch::{ContactPatch, Moved, PatchDetail, PatchFacets, PatchSummary};
+use crate::friction::patches::solve::chunks::Division;
 use crate::friction::patches::solve::newton::Newton;
 use crate::friction::patches::solve::stage::{self, Visits};
 use crate::friction::patches::solve::{CoupledPatch, Motion, Search};
@@ -96,10 +100,10 @@ pub(crate) struct FrictionPatches {
     face_parts: FaceParts,
     /// Touching facets by face and target.
     by_face: Vec<Place>,
-    /// Touching facets by patch, those of each patch among them, and the patch of each facet.
+    /// Touching facets by patch, those of each patch among them, and for each facet its place there and its patch.
     order: Vec<Place>,
     runs: Vec<PatchFacets>,
-    run_of: Vec<u32>,
+    places: Vec<FacetPlace>,
     opposite: Opposite,
     /// Patches by block.
     adjacency: BlockContactIndex,
@@ -112,17 +116,30 @@ pub(crate) struct FrictionPatches {
     /// One per run.
     patches: Vec<ContactPatch>,
     summaries: Vec<PatchSummary>,
+    /// One for each patch whose friction is searched for, and for their facets the mean square distance of points from the facet's own centre of pressure [m²].
+    details: Vec<PatchDetail>,
+    own_m2: Vec<f64>,
+    /// Whether others have friction.
+    has_slight: bool,
     coupled: Vec<CoupledPatch>,
-    /// Sides of each patch on blocks that deform.
+    /// Their sides on blocks that deform.
     sides: Vec<[Option<NodalSide>; 2]>,
     /// Room for their solution, by block.
     most_n: Vec<f64>,
     visits: Visits,
     newton: Newton,
+    /// How patches are divided among threads, and the order in which their friction is searched for.
+    division: Division,
+    search_order: Vec<u32>,
     new_faces: Vec<FaceMemory>,
     gaps_j: Vec<f64>,
-    /// Second moments of each facet about its own centre of pressure [m²].
-    own_m2: Vec<Mat3>,
+}
+
+/// Where a facet is among the facets of all patches, and the number of its patch.
+#[derive(Clone, Copy, Default)]
+struct FacetPlace {
+    place: u32,
+    patch: u32,
 }
 
 impl FrictionPatches {
@@ -145,36 +162,48 @@ impl FrictionPatches {
 
     /// Which facets each patch has.
     fn join_faces(&mut self, scene: &PatchScene, forces: &[FacetForce], history: &ContactHistory) {
-        let Self { opposite, by_face, order, runs, run_of, face_parts, .. } = self;
+        let Self { opposite, by_face, order, runs, places, face_parts, .. } = self;
         opposite.join(scene, (forces, history), (by_face, order), (face_parts, runs));
-        run_of.resize(forces.len(), 0);
-        for (number, run) in (0..).zip(&*runs) {
-            order[run.places.clone()].iter().for_each(|&(_, _, t)| run_of[t as usize] = number);
+        places.resize(forces.len(), FacetPlace::default());
+        for (patch, run) in (0..).zip(&*runs) {
+            for (place, &(_, _, t)) in run.places.clone().zip(&order[run.places.clone()]) {
+                places[t as usize] = FacetPlace { place: place as u32, patch };
+            }
         }
     }
 
-    /// Adds the friction of faces whose law acts on faces to the facets' forces, and takes over what they remember; the facets are
-    /// [arranged](Self::arrange). Gives the largest change of a slip [m/s] when the search for friction ended before it was found.
-    pub(crate) fn add(
-        &mut self,
-        scene: &PatchScene,
-        forces: &mut [FacetForce],
-        history: &mut ContactHistory,
-    ) -> f64 {
+    /// Finds the patches of faces whose law acts on faces; the facets are [arranged](Self::arrange). Adds the friction of those that are slight to their facets'
+    /// forces.
+    pub(crate) fn begin(&mut self, scene: &PatchScene, forces: &mut [FacetForce], history: &ContactHistory) {
         self.join_faces(scene, forces, history);
-        self.find_patches(scene, forces, history);
+        self.find_patches(scene, forces);
         let blocks_of = |summary: &PatchSummary| (summary.owner, summary.target);
         self.adjacency.arrange(scene.input.blocks.len(), self.summaries.iter().map(blocks_of));
         let tolerance = Tolerance::new(scene.input, scene.joints.tolerance, self.patches.len());
         tolerance.find(&mut self.summaries, scene.input.bodies, &mut self.most_n);
+        self.find_details(scene, forces, history);
         self.advance_bodies(scene);
-        let left_m_s = self.solve(scene, forces).left_m_s;
-        let Self { patches, runs, run_of, new_faces, own_m2, .. } = self;
-        let spread = |((t, force), run): ((usize, &mut FacetForce), &u32)| {
-            let (t, own_m2) = (t as u32, &own_m2[t]);
-            if scene.sums(t).pressure > 0.0 {
-                let patch = &patches[*run as usize];
-                patch.spread_to(force, (scene, t, own_m2.trace()), patch.sign_of(scene.touch(t)));
+        if self.has_slight {
+            self.add_slight_friction(scene, forces);
+        }
+    }
+
+    /// Finds the friction of patches that are not slight, adds it to the facets' forces, and takes over what faces remember; `push` are the other forces of
+    /// contact on nodes where blocks [answer](Self::asks_nodes). Gives the largest change of a slip [m/s] when the search for friction ended before it was found.
+    pub(crate) fn find(
+        &mut self,
+        scene: &PatchScene,
+        push: &[Vec3],
+        forces: &mut [FacetForce],
+        history: &mut ContactHistory,
+    ) -> f64 {
+        let left_m_s = self.solve(scene, push, forces).left_m_s;
+        let Self { patches, runs, details, own_m2, places, new_faces, .. } = self;
+        let spread = |((t, force), &FacetPlace { place, patch }): ((usize, &mut FacetForce), &FacetPlace)| {
+            let (patch, run) = (&patches[patch as usize], &runs[patch as usize]);
+            if let Some(detail) = patch.detail.filter(|_| scene.sums(t as u32).pressure > 0.0) {
+                let own_m2 = own_m2[facets_of(details, detail).start + place as usize - run.places.start];
+                details[detail as usize].spread_to(patch, force, (scene, t as u32, own_m2));
             }
         };
         let memory_of =
@@ -187,7 +216,7 @@ impl FrictionPatches {
                 forces
                     .par_iter_mut()
                     .enumerate()
-                    .zip(&run_of[..])
+                    .zip(&places[..])
                     .with_min_len(GRAIN_PATCHES)
                     .for_each(spread)
             },
@@ -200,30 +229,36 @@ impl FrictionPatches {
         left_m_s
     }
 
-    /// Where each face presses, how hard, and how it slips.
-    fn find_patches(&mut self, scene: &PatchScene, forces: &[FacetForce], history: &ContactHistory) {
-        self.own_m2.resize(forces.len(), Mat3::zeros());
-        let own = |(t, (own, force)): (u32, (&mut Mat3, &FacetForce))| {
-            let FacetMoments { pressure, area, .. } = *scene.sums(t);
-            let touch = scene.touch(t);
-            if pressure > 0.0 {
-                *own = moments::second_moment_m2((scene.input, scene.hulls), touch, area, &force.center);
-            }
-        };
-        let each = self.own_m2.par_iter_mut().zip(forces).enumerate();
-        each.with_min_len(GRAIN_PATCHES).for_each(|(t, each)| own((t as u32, each)));
-        let (order, runs, own) = (&self.order, &self.runs, &self.own_m2);
+    /// Where each face presses, and how hard.
+    fn find_patches(&mut self, scene: &PatchScene, forces: &[FacetForce]) {
+        let (order, runs) = (&self.order, &self.runs);
         self.patches.resize(runs.len(), ContactPatch::default());
         self.summaries.resize(runs.len(), PatchSummary::default());
-        let patches = self.patches.par_chunks_mut(GRAIN_PATCHES);
-        let found = patches.zip(self.summaries.par_chunks_mut(GRAIN_PATCHES));
-        found.zip(runs.par_chunks(GRAIN_PATCHES)).for_each(|((patches, summaries), runs)| {
-            let mut remembered = Remembered::since(history, &runs[0]);
-            for ((patch, summary), run) in patches.iter_mut().zip(summaries).zip(runs) {
-                patch.find((&order[run.places.clone()], run), scene, (forces, own), &mut remembered);
-                *summary = patch.summary();
-            }
+        let found = self.patches.par_iter_mut().zip(&mut self.summaries).zip(runs);
+        found.with_min_len(GRAIN_PATCHES).for_each(|((patch, summary), run)| {
+            patch.find((&order[run.places.clone()], run), scene, forces);
+            *summary = patch.summary();
         });
+    }
+
+    /// Finds what is to be known of patches whose friction is searched for.
+    fn find_details(&mut self, scene: &PatchScene, forces: &[FacetForce], history: &ContactHistory) {
+        let Self { patches, summaries, runs, order, details, own_m2, has_slight, .. } = self;
+        *has_slight = false;
+        details.clear();
+        let mut end = 0;
+        for (number, patch) in (0..).zip(&mut *patches) {
+            if summaries[number as usize].matters() {
+                end += runs[number as usize].places.len() as u32;
+                patch.detail = Some(details.len() as u32);
+                details.push(PatchDetail { patch: number, end, ..PatchDetail::default() });
+            } else {
+                *has_slight |= summaries[number as usize].has_friction;
+            }
+        }
+        own_m2.resize(end as usize, 0.0);
+        let found = DetailsScene { scene, forces, history, patches, runs, order };
+        found.find(details, (0, own_m2));
     }
 
     /// Takes the blocks that do not deform to the end of the step under all loads, normal forces and the friction of the last step.
@@ -242,17 +277,17 @@ impl FrictionPatches {
                 self.bodies[block.index()].push(&bond.center, &(sign * bond.force_n));
             }
         }
-        let Self { is_asked, adjacency, patches, summaries, bodies, .. } = self;
+        let Self { is_asked, adjacency, patches, details, bodies, .. } = self;
         let is_nodal = |body: &Body| scene.input.deformation.is_some() && body.deforms;
         let advance = |(block, body): (usize, &mut Body)| {
             body.velocity_m_s += body.prescribed_change_m_s;
             if is_asked[block] && body.mass_kg.is_finite() && !is_nodal(body) {
                 body.add_gyroscopic_torque();
                 for (k, sign) in adjacency.at(BlockId(block as u32)) {
-                    let (patch, summary) = (&patches[k as usize], &summaries[k as usize]);
+                    let patch = &patches[k as usize];
                     patch.apply_loads(body, sign);
-                    if !summary.is_slight() {
-                        patch.apply_previous_friction(body, sign);
+                    if let Some(detail) = patch.detail {
+                        details[detail as usize].apply_previous_friction(patch, body, sign);
                     }
                 }
                 body.advance_velocity(scene.input.dt_s);
@@ -261,59 +296,69 @@ impl FrictionPatches {
         bodies.par_iter_mut().enumerate().with_min_len(GRAIN_BODIES).for_each(advance);
     }
 
+    /// Whether blocks that deform have friction.
+    pub(crate) fn asks_nodes(&self, scene: &PatchScene) -> bool {
+        let asks = |(body, is_asked): (&Body, &bool)| body.deforms && *is_asked;
+        scene.input.deformation.is_some() && scene.input.bodies.iter().zip(&self.is_asked).any(asks)
+    }
+
+    /// The facets of patches whose friction is searched for on a block, and of the block.
+    pub(crate) fn searched_facets(&self, block: BlockId) -> impl Iterator<Item = u32> {
+        let searched = self.adjacency.at(block).filter(|(k, _)| self.patches[*k as usize].detail.is_some());
+        searched
+            .flat_map(|(k, _)| self.order[self.runs[k as usize].places.clone()].iter().map(|place| place.2))
+    }
+
     /// How blocks that deform answer to the loads, and to the friction of patches, whose sides on them are found.
-    fn ask_blocks(&mut self, scene: &PatchScene, forces: &[FacetForce]) {
-        let Self { nodal, is_asked, adjacency, runs, order, patches, summaries, sides, own_m2, .. } = self;
+    fn ask_blocks(&mut self, scene: &PatchScene, push: &[Vec3], forces: &[FacetForce]) {
+        let Self { nodal, is_asked, adjacency, runs, order, patches, details, sides, own_m2, .. } = self;
         sides.clear();
-        sides.resize(patches.len(), [None; 2]);
-        nodal.begin(scene.input.blocks.len());
-        let Some(deformation) = scene.input.deformation else { return };
-        let patch = |(k, _): (u32, f64)| {
-            let (run, summary) = (runs[k as usize].places.clone(), &summaries[k as usize]);
-            (k, &patches[k as usize], &order[run], summary.matters())
+        sides.resize(details.len(), [None; 2]);
+        let Some(deformation) = scene.input.deformation else { return nodal.begin([].into_iter()) };
+        let patch = |(k, _): (u32, f64)| -> Option<PatchOn> {
+            let (run, patch) = (&order[runs[k as usize].places.clone()], &patches[k as usize]);
+            let detail = patch.detail?;
+            Some((k, patch, run, &details[detail as usize], &own_m2[facets_of(details, detail)]))
         };
-        let is_nodal = |block: BlockId| is_asked[block.index()] && scene.input.bodies[block.index()].deforms;
-        let found = SideScene { scene: *scene, forces, own_m2 };
-        nodal.take_sides(&found, |block| is_nodal(block).then(|| adjacency.at(block).map(patch)));
+        let is_nodal = |block: &BlockId| is_asked[block.index()] && scene.input.bodies[block.index()].deforms;
+        nodal.begin(scene.input.blocks.ids().filter(is_nodal));
+        let found = SideScene { scene: *scene, push, forces };
+        nodal.take_sides(&found, |block| adjacency.at(block).filter_map(patch));
         nodal.add_bonds(scene);
         nodal.answer(scene, deformation);
         nodal.each_side(|block, number, side| {
-            let k = usize::from(patches[number as usize].owner != block);
-            sides[number as usize][k] = Some(side);
+            let patch = &patches[number as usize];
+            if let Some(detail) = patch.detail {
+                sides[detail as usize][usize::from(patch.owner != block)] = Some(side);
+            }
         });
     }
 
     /// Friction of the patches.
-    fn solve(&mut self, scene: &PatchScene, forces: &[FacetForce]) -> Search {
-        self.ask_blocks(scene, forces);
-        let Self { patches, summaries, bodies, coupled, nodal, sides, visits, newton, .. } = self;
+    fn solve(&mut self, scene: &PatchScene, push: &[Vec3], forces: &[FacetForce]) -> Search {
+        self.ask_blocks(scene, push, forces);
+        let Self { patches, summaries, details, bodies, coupled, nodal, sides, visits, newton, .. } = self;
+        let Self { division, search_order, .. } = self;
         let ContactInput { bodies: start, dt_s, is_iterated, .. } = *scene.input;
+        let summary_of = |k: u32| &summaries[details[k as usize].patch as usize];
+        search_order.clear();
+        search_order.extend(0..details.len() as u32);
+        division.divide(search_order, |k| summary_of(k).moving(start));
         coupled.clear();
-        for (((number, patch), summary), sides) in (0..).zip(&*patches).zip(&*summaries).zip(&*sides) {
-            if summary.matters() {
-                let patch = (number, patch, summary.tolerance_n);
-                coupled.extend(CoupledPatch::new(patch, (start, nodal), *sides, dt_s));
-            }
-        }
+        coupled.extend(search_order.iter().filter_map(|&k| {
+            let (detail, tolerance_n) = (&details[k as usize], summary_of(k).tolerance_n);
+            let patch = (&patches[detail.patch as usize], detail, tolerance_n);
+            CoupledPatch::new(patch, (start, nodal), sides[k as usize], dt_s)
+        }));
+        division.take_groups(coupled.iter().map(|patch| summaries[patch.patch as usize].moving(start)));
         coupled.iter().for_each(|patch| patch.push_nodes(nodal));
         let (alone, eased) =
             (stage::visits_alone(coupled.len()), stage::visits_eased(coupled.len(), is_iterated));
-        let mut motion = Motion { bodies, nodal, dt_s, is_iterated, visits, alone, eased };
+        let mut motion = Motion { bodies, nodal, division, dt_s, is_iterated, visits, alone, eased };
         let search = solve::solve(coupled, start, (&mut motion, newton));
         for found in coupled.iter() {
             found.hand_over(&mut patches[found.patch as usize], (start, bodies), dt_s);
         }
-        let slight = |(patch, summary): (&mut ContactPatch, &PatchSummary)| {
-            if summary.has_friction && summary.is_slight() {
-                let alone =
-                    CoupledPatch::new((0, patch, summary.tolerance_n), (start, nodal), [None; 2], dt_s);
-                if let Some(mut alone) = alone {
-                    alone.slight_friction(bodies);
-                    alone.hand_over(patch, (start, bodies), dt_s);
-                }
-            }
-        };
-        patches.par_iter_mut().zip(&*summaries).with_min_len(GRAIN_PATCHES).for_each(slight);
         search
     }
 
@@ -326,10 +371,11 @@ impl FrictionPatches {
         add: &mut dyn FnMut(BlockId, BlockId, f64),
     ) {
         let scene = Moved { blocks, integrals, moved };
-        let Self { patches, runs, order, gaps_j, .. } = self;
+        let Self { patches, details, runs, order, gaps_j, .. } = self;
         gaps_j.resize(patches.len(), 0.0);
         let gap = |((gap_j, patch), run): ((&mut f64, &ContactPatch), &PatchFacets)| {
-            *gap_j = patch.coulomb_gap_j(&order[run.places.clone()], &scene, forces);
+            let detail = patch.detail.map(|detail| &details[detail as usize]);
+            *gap_j = patch.coulomb_gap_j(detail, &order[run.places.clone()], &scene, forces);
         };
         gaps_j.par_iter_mut().zip(&*patches).zip(&*runs).with_min_len(GRAIN_PATCHES).for_each(gap);
         for (patch, &gap_j) in patches.iter().zip(&*gaps_j) {

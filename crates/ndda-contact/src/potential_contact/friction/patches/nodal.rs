@@ -12,8 +12,7 @@ use ndda_mesh::{BlockId, Mat3, Vec3};
 use rayon::prelude::*;
 
 use crate::friction::facet::FacetForce;
-use crate::friction::patches::patch::ContactPatch;
-use crate::friction::patches::spread::Spread;
+use crate::friction::patches::patch::{ContactPatch, PatchDetail};
 use crate::friction::patches::{GRAIN_BODIES, PatchScene, Place};
 use crate::model::Deformation;
 
@@ -31,7 +30,8 @@ struct Weight {
 /// One side of a patch, by its place among those of its block.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct NodalSide {
-    block: BlockId,
+    /// Place of the block among those that answer.
+    pub slot: u32,
     place: u32,
     /// Length of each column of the block.
     rows: u32,
@@ -64,8 +64,11 @@ pub(super) struct BlockSides {
 /// Nodes of blocks that deform, and what their patches do to them.
 #[derive(Default)]
 pub(super) struct Nodal {
+    /// The blocks that deform and have friction, ascending.
+    asked: Vec<BlockId>,
+    /// Their sides; there may be room for more.
     blocks: Vec<BlockSides>,
-    /// For each block that deforms and has friction, one vector per row in each column: velocities or slips at a time within the step [m/s], and what
+    /// For each of them one vector per row in each column: velocities or slips at a time within the step [m/s], and what
     /// they change by, three columns for each side of a patch [m/s per N in a whole step]. Until the solver has answered, rows are nodes, and forces
     /// are in place of velocities.
     columns: Vec<Vec<Vec3>>,
@@ -75,38 +78,38 @@ pub(super) struct Nodal {
 #[derive(Clone, Copy)]
 pub(super) struct SideScene<'a> {
     pub scene: PatchScene<'a>,
+    /// Forces of contact on nodes, but for friction that is searched for [N].
+    pub push: &'a [Vec3],
     pub forces: &'a [FacetForce],
-    pub own_m2: &'a [Mat3],
 }
 
+/// A patch whose friction is searched for: its number, its facets, what is known of it, and the mean square distance of the points of each facet from the own
+/// centre of that.
+pub(super) type PatchOn<'a> = (u32, &'a ContactPatch, &'a [Place], &'a PatchDetail, &'a [f64]);
+
 impl Nodal {
-    /// Forgets the last step.
-    pub(super) fn begin(&mut self, blocks: usize) {
-        self.blocks.resize_with(blocks, BlockSides::default);
-        self.columns.resize_with(blocks, Vec::new);
-        for (sides, columns) in self.blocks.iter_mut().zip(&mut self.columns) {
-            sides.begin();
-            columns.clear();
-        }
+    /// Forgets the last step, and takes the blocks that deform and have friction, ascending.
+    pub(super) fn begin(&mut self, asked: impl Iterator<Item = BlockId>) {
+        self.asked.clear();
+        self.asked.extend(asked);
+        let room = self.asked.len().max(self.blocks.len());
+        self.blocks.resize_with(room, BlockSides::default);
+        self.columns.resize_with(room, Vec::new);
     }
 
-    /// Lets each block that `patches_of` gives patches for take its sides of them: with the facets of each patch, and whether its friction matters.
-    pub(super) fn take_sides<'a, I: Iterator<Item = (u32, &'a ContactPatch, &'a [Place], bool)>>(
+    /// Lets each block take its sides of patches.
+    pub(super) fn take_sides<'a, I: Iterator<Item = PatchOn<'a>>>(
         &mut self,
         found: &SideScene,
-        patches_of: impl Fn(BlockId) -> Option<I> + Sync,
+        patches_of: impl Fn(BlockId) -> I + Sync,
     ) {
-        let blocks = self.blocks.par_iter_mut().zip(&mut self.columns).enumerate();
-        blocks.with_min_len(GRAIN_BODIES).for_each(|(block, (sides, columns))| {
-            let block = BlockId(block as u32);
-            let Some(patches) = patches_of(block) else { return };
-            columns.resize(found.scene.input.blocks.nodes_of(block).len(), Vec3::zeros());
-            for (number, patch, run, matters) in patches {
-                sides.add_forces(block, found, run, columns);
-                if matters {
-                    sides.add(block, found, (number, patch, run), columns);
-                }
-            }
+        let Self { asked, blocks, columns } = self;
+        let blocks = asked.par_iter().zip(blocks).zip(columns);
+        blocks.with_min_len(GRAIN_BODIES).for_each(|((&block, sides), columns)| {
+            sides.begin();
+            columns.clear();
+            columns.extend_from_slice(&found.push[found.scene.input.blocks.nodes_of(block)]);
+            patches_of(block).for_each(|patch| sides.add(block, found, patch, columns));
         });
     }
 
@@ -115,8 +118,8 @@ impl Nodal {
         let blocks = scene.input.blocks;
         for bond in scene.bonds {
             for (k, block) in bond.blocks.iter().enumerate() {
-                let (first, forces) = (blocks.nodes_of(*block).start, &mut self.columns[block.index()]);
-                if !forces.is_empty() {
+                if let Ok(slot) = self.asked.binary_search(block) {
+                    let (first, forces) = (blocks.nodes_of(*block).start, &mut self.columns[slot]);
                     bond.shares(blocks, k, |node, weight| forces[node - first] += weight * bond.force_n);
                 }
             }
@@ -125,33 +128,32 @@ impl Nodal {
 
     /// Lets the solver answer for all blocks: velocities and U in place of forces, or slips and Pᵀ U.
     pub(super) fn answer(&mut self, scene: &PatchScene, deformation: &dyn Deformation) {
-        deformation.answer(&mut self.columns);
-        let blocks = self.blocks.par_iter_mut().zip(&mut self.columns).enumerate();
-        blocks.with_min_len(GRAIN_BODIES).for_each(|(block, (sides, columns))| {
-            if !columns.is_empty() {
-                let nodes = scene.input.blocks.nodes_of(BlockId(block as u32));
-                sides.keep_slips(&scene.input.velocity[nodes], columns);
-            }
+        let Self { asked, blocks, columns } = self;
+        deformation.answer(asked, &mut columns[..asked.len()]);
+        let blocks = asked.par_iter().zip(blocks).zip(columns);
+        blocks.with_min_len(GRAIN_BODIES).for_each(|((&block, sides), columns)| {
+            let nodes = scene.input.blocks.nodes_of(block);
+            sides.keep_slips(&scene.input.velocity[nodes], columns);
         });
     }
 
     /// Each side: its block, the number of its patch, and where it is.
     pub(super) fn each_side(&self, mut work: impl FnMut(BlockId, u32, NodalSide)) {
-        for (block, found) in (0..).map(BlockId).zip(&self.blocks) {
+        for (slot, (block, found)) in (0..).zip(self.asked.iter().zip(&self.blocks)) {
             for (place, side) in (0..).zip(&found.sides) {
-                work(block, side.patch, NodalSide { block, place, rows: found.rows as u32 });
+                work(*block, side.patch, NodalSide { slot, place, rows: found.rows as u32 });
             }
         }
     }
 
-    /// Pᵀ v.
-    pub(super) fn slip(&self, side: &NodalSide) -> Vec3 {
-        side.slip(&self.blocks[side.block.index()], &self.columns[side.block.index()])
+    /// The blocks that answer.
+    pub(super) fn asked(&self) -> &[BlockId] {
+        &self.asked
     }
 
     /// Pᵀ U.
     pub(super) fn flexibility(&self, side: &NodalSide) -> Mat3 {
-        let (block, columns) = (&self.blocks[side.block.index()], &self.columns[side.block.index()]);
+        let (block, columns) = (&self.blocks[side.slot as usize], &self.columns[side.slot as usize]);
         let mut found = Mat3::zeros();
         for (k, mut column) in found.column_iter_mut().enumerate() {
             let answers = &columns[side.column(k)];
@@ -166,26 +168,26 @@ impl Nodal {
 
     /// v ← v + s U f.
     pub(super) fn push(&mut self, side: &NodalSide, force: &Vec3, part: f64) {
-        side.push(&mut self.columns[side.block.index()], force, part);
+        side.push(&mut self.columns[side.slot as usize], force, part);
     }
 
-    /// The columns of all blocks.
-    pub(super) fn columns_mut(&mut self) -> &mut [Vec<Vec3>] {
-        &mut self.columns
+    /// The sides of each block that answers, and its columns.
+    pub(super) fn blocks(&self) -> (&[BlockSides], &[Vec<Vec3>]) {
+        let asked = self.asked.len();
+        (&self.blocks[..asked], &self.columns[..asked])
     }
 
-    /// The sides of each block, and its columns.
-    pub(super) fn blocks_mut(
-        &mut self,
-    ) -> impl IndexedParallelIterator<Item = (&BlockSides, &mut Vec<Vec3>)> {
-        self.blocks.par_iter().zip(&mut self.columns)
+    /// The same, with columns that may change.
+    pub(super) fn blocks_mut(&mut self) -> (&[BlockSides], &mut [Vec<Vec3>]) {
+        let asked = self.asked.len();
+        (&self.blocks[..asked], &mut self.columns[..asked])
     }
 
-    /// Does something with the velocities or slips of each block that deforms, and with those at the start of the step.
-    pub(super) fn each_velocity(&mut self, mut work: impl FnMut(&mut [Vec3], &[Vec3])) {
-        for (block, columns) in self.blocks.iter().zip(&mut self.columns) {
-            work(&mut columns[..block.rows], &block.start);
-        }
+    /// Does something with the velocities or slips of each block that answers, and with those at the start of the step.
+    pub(super) fn each_velocity(&mut self, work: impl Fn(&mut [Vec3], &[Vec3]) + Sync) {
+        let (blocks, columns) = self.blocks_mut();
+        let each = blocks.par_iter().zip(columns).with_min_len(GRAIN_BODIES);
+        each.for_each(|(block, columns)| work(&mut columns[..block.rows], &block.start));
     }
 }
 
@@ -207,34 +209,22 @@ impl BlockSides {
         &self.weights[from as usize..self.sides[place].end as usize]
     }
 
-    /// Adds the forces of the facets of a patch to the nodes, but for its friction.
-    fn add_forces(&self, block: BlockId, found: &SideScene, run: &[Place], nodes: &mut [Vec3]) {
-        let first = found.scene.input.blocks.nodes_of(block).start;
-        for &(_, _, t) in run {
-            let FacetForce { push, shear, .. } = found.forces[t as usize];
-            let is_owner = found.scene.owner(t) == block;
-            let force = if is_owner { push + shear } else { -(push + shear) };
-            Spread::default()
-                .each_node(&found.scene, (t, is_owner), |node, w| nodes[node - first] += w * force);
-        }
-    }
-
     /// Adds a side, and the forces of its friction as columns.
     fn add(
         &mut self,
         block: BlockId,
         found: &SideScene,
-        (number, patch, run): (u32, &ContactPatch, &[Place]),
+        (number, patch, run, detail, own_m2): PatchOn,
         columns: &mut Vec<Vec3>,
     ) {
-        let SideScene { scene, forces, own_m2 } = found;
+        let SideScene { scene, forces, .. } = found;
         let nodes = scene.input.blocks.nodes_of(block);
         self.place_of.resize(nodes.len(), 0);
         let from = self.weights.len() as u32;
-        let spread = &patch.spread;
+        let spread = &detail.spread;
         // Force on a node of share 1 at an arm of 1 m for a unit of T/r.
-        let per_arm_1_m = patch.surface.radius_m / spread.radius2_m2;
-        for &(_, _, t) in run {
+        let per_arm_1_m = detail.surface.radius_m / spread.radius2_m2;
+        for (&(_, _, t), own_m2) in run.iter().zip(own_m2) {
             let is_owner = scene.owner(t) == block;
             let arm = spread.center_of(scene, &forces[t as usize], t) - spread.center;
             let twist = per_arm_1_m * patch.normal.cross(&arm);
@@ -244,13 +234,13 @@ impl BlockSides {
             });
             if scene.sums(t).pressure > 0.0 {
                 let share = spread.weight(scene, t) / spread.total;
-                let couple = share * own_m2[t as usize].trace() * per_arm_1_m * patch.normal;
+                let couple = share * own_m2 * per_arm_1_m * patch.normal;
                 scene.couples().each_force(scene.touch(t), is_owner, &couple, |node, force| {
                     self.add_weight(from, (node - nodes.start, 0.0, force));
                 });
             }
         }
-        let (axes, twist_of_force) = ([patch.axes[0], patch.axes[1]], patch.twist_of_force());
+        let (axes, twist_of_force) = ([detail.axes[0], detail.axes[1]], detail.twist_of_force(patch));
         self.sides.push(Side { patch: number, end: self.weights.len() as u32, axes, twist_of_force });
         let first = columns.len();
         columns.resize(first + 3 * nodes.len(), Vec3::zeros());
@@ -326,6 +316,11 @@ impl NodalSide {
         }
     }
 
+    /// Its three columns.
+    pub(super) fn columns<'a>(&self, columns: &'a [Vec3]) -> &'a [Vec3] {
+        &columns[self.column(0).start..self.column(2).end]
+    }
+
     /// Pᵀ v, from the sides of its block and their columns.
     pub(super) fn slip(&self, block: &BlockSides, columns: &[Vec3]) -> Vec3 {
         if block.has_slips() {
@@ -335,9 +330,9 @@ impl NodalSide {
         }
     }
 
-    /// The velocities of its block among the columns.
-    pub(super) fn velocities<'a>(&self, columns: &'a mut [Vec3]) -> &'a mut [Vec3] {
-        &mut columns[..self.rows as usize]
+    /// Number of velocities or slips of its block.
+    pub(super) fn rows(&self) -> usize {
+        self.rows as usize
     }
 
     /// Range of the column with the velocity changes per unit of the k-th friction component of this side.

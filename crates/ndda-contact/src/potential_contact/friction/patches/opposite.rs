@@ -8,11 +8,12 @@ use std::ops::Range;
 
 use ndda_mesh::geometry::triangle_area_vector;
 use ndda_mesh::{BlockId, Vec3};
+use rayon::prelude::*;
 
 use crate::friction::facet::FacetForce;
 use crate::friction::patches::parts::{FaceParts, number_of, was_divided};
 use crate::friction::patches::patch::PatchFacets;
-use crate::friction::patches::{PatchScene, Place};
+use crate::friction::patches::{GRAIN_PATCHES, PatchScene, Place};
 use crate::model::ContactHistory;
 
 /// Faces whose normals are opposite but for so much lie on each other: the sine of about 8°.
@@ -33,12 +34,14 @@ struct Run {
     opposite: u32,
 }
 
+/// (Lower block, other block, run, the run that lies on it.)
+type PairRun = (BlockId, BlockId, u32, u32);
+
 /// Facets by patch, found from facets by face and target.
 #[derive(Default)]
 pub(super) struct Opposite {
     runs: Vec<Run>,
-    /// (lower block, other block, run).
-    by_pair: Vec<(BlockId, BlockId, u32)>,
+    by_pair: Vec<PairRun>,
 }
 
 impl Opposite {
@@ -67,48 +70,67 @@ impl Opposite {
         let mut start = 0;
         for places in by_face.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
             let (_, target, first) = places[0];
-            let pressure = |t: u32| scene.sums(t).pressure.max(0.0);
-            let total: f64 = places.iter().map(|&(_, _, t)| pressure(t)).sum();
-            let mut direction = Vec3::zeros();
-            if total > 0.0 && scene.law(places).is_some() {
-                direction =
-                    places.iter().map(|&(_, _, t)| pressure(t) / total * forces[t as usize].push).sum();
-                direction = direction.try_normalize(0.0).unwrap_or_default();
-            }
             let places = start..start + places.len();
             start = places.end;
-            let (owner, pressure, opposite) = (scene.owner(first), total, NONE);
-            self.runs.push(Run { places, owner, target, direction, pressure, opposite });
+            let (owner, direction, pressure) = (scene.owner(first), Vec3::zeros(), 0.0);
+            self.runs.push(Run { places, owner, target, direction, pressure, opposite: NONE });
+        }
+        let press = |run: &mut Run| {
+            let places = &by_face[run.places.clone()];
+            let pressure = |t: u32| scene.sums(t).pressure.max(0.0);
+            let total: f64 = places.iter().map(|&(_, _, t)| pressure(t)).sum();
+            run.pressure = total;
+            if total > 0.0 && scene.law(places).is_some() {
+                let push = |&(_, _, t): &Place| pressure(t) / total * forces[t as usize].push;
+                let direction: Vec3 = places.iter().map(push).sum();
+                run.direction = direction.try_normalize(0.0).unwrap_or_default();
+            }
+        };
+        if self.runs.len() > GRAIN_PATCHES {
+            self.runs.par_iter_mut().with_min_len(GRAIN_PATCHES).for_each(press);
+        } else {
+            self.runs.iter_mut().for_each(press);
         }
     }
 
     fn find_opposite(&mut self, scene: &PatchScene, by_face: &[Place]) {
-        self.by_pair.clear();
-        self.by_pair.extend((0..).zip(&self.runs).map(|(number, run)| {
+        let Self { runs, by_pair, .. } = self;
+        by_pair.clear();
+        by_pair.extend((0..).zip(&*runs).map(|(number, run)| {
             let (owner, target) = (run.owner, run.target);
-            (owner.min(target), owner.max(target), number)
+            (owner.min(target), owner.max(target), number, NONE)
         }));
-        self.by_pair.sort_unstable();
-        for pair in self.by_pair.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
-            let from_other = pair.partition_point(|&(lower, _, run)| self.runs[run as usize].owner == lower);
-            let (own, others) = pair.split_at(from_other);
-            for &(_, _, number) in own {
-                let run = &self.runs[number as usize];
+        by_pair.par_sort_unstable();
+        let all = &*runs;
+        let of_pair = |pair: &mut [PairRun]| {
+            let from_other = pair.partition_point(|&(lower, _, run, _)| all[run as usize].owner == lower);
+            let (own, others) = pair.split_at_mut(from_other);
+            for (_, _, number, opposite) in own {
+                let run = &all[*number as usize];
                 let law = scene.law(&by_face[run.places.clone()]);
-                let is_free = |other: &Run| {
+                let is_free = |&(_, _, other, taken): &PairRun| {
+                    let other = &all[other as usize];
                     let same_law = || match (law, scene.law(&by_face[other.places.clone()])) {
                         (Some(a), Some(b)) => std::ptr::addr_eq(a, b),
                         _ => false,
                     };
-                    other.opposite == NONE && is_opposite(&run.direction, &other.direction) && same_law()
+                    taken == NONE && is_opposite(&run.direction, &other.direction) && same_law()
                 };
-                let along = |other: u32| run.direction.dot(&self.runs[other as usize].direction);
-                let free = others.iter().map(|other| other.2).filter(|&k| is_free(&self.runs[k as usize]));
-                if let Some(other) = free.min_by(|&a, &b| along(a).total_cmp(&along(b))) {
-                    self.runs[number as usize].opposite = other;
-                    self.runs[other as usize].opposite = number;
+                let along = |other: u32| run.direction.dot(&all[other as usize].direction);
+                let free = others.iter_mut().filter(|other| is_free(other));
+                if let Some(other) = free.min_by(|a, b| along(a.2).total_cmp(&along(b.2))) {
+                    (*opposite, other.3) = (other.2, *number);
                 }
             }
+        };
+        let is_same = |a: &PairRun, b: &PairRun| (a.0, a.1) == (b.0, b.1);
+        if by_pair.len() > GRAIN_PATCHES {
+            by_pair.par_chunk_by_mut(is_same).for_each(of_pair);
+        } else {
+            by_pair.chunk_by_mut(is_same).for_each(of_pair);
+        }
+        for &(_, _, run, opposite) in &*by_pair {
+            runs[run as usize].opposite = opposite;
         }
     }
 }

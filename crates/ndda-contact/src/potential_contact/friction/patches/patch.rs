@@ -2,12 +2,11 @@
 
 use std::ops::Range;
 
-use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
+use ndda_mesh::{BlockId, BlockSet, Vec3};
 
 use crate::friction::facet::{FacetForce, relative_motion};
 use crate::friction::law::{FacetSlip, FrictionLaw, ShearMemory};
 use crate::friction::patches::limit_surface::LimitSurface;
-use crate::friction::patches::moments::{fourfold_angle, principal, tangents};
 use crate::friction::patches::parts::order_of;
 use crate::friction::patches::spread::Spread;
 use crate::friction::patches::{PatchScene, Place};
@@ -31,6 +30,16 @@ impl PatchSummary {
     /// Whether its friction changes by less than what matters to the blocks, whatever its slip: a block has many such patches along its edges.
     pub(super) fn is_slight(&self) -> bool {
         2.0 * self.most_n <= self.tolerance_n
+    }
+
+    /// The blocks that may move; the same one twice where the other may not.
+    pub(super) fn moving(&self, bodies: &[Body]) -> [BlockId; 2] {
+        let is_held = |block: BlockId| bodies[block.index()].mass_kg.is_infinite();
+        match [self.owner, self.target] {
+            [owner, target] if is_held(owner) => [target; 2],
+            [owner, target] if is_held(target) => [owner; 2],
+            both => both,
+        }
     }
 
     /// Whether its friction is searched for together with that of the others.
@@ -60,11 +69,11 @@ pub(super) struct PatchFacets {
 }
 
 /// The contact of one face with one block; facets of the block's own face that lies on it count with the opposite sign.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct ContactPatch {
     pub owner: BlockId,
     pub target: BlockId,
-    has_law: bool,
+    pub has_law: bool,
     /// ∫ φ dA and its centre; nothing else counts where there is no pressure.
     pub pressure: f64,
     pub center: Vec3,
@@ -73,27 +82,36 @@ pub(super) struct ContactPatch {
     pub area_m2: f64,
     /// Most friction [N].
     pub most_n: f64,
-    /// The axes of the pressure, and the normal; what friction can carry along them.
-    pub axes: [Vec3; 3],
-    pub surface: LimitSurface,
+    /// Its place among those whose friction is searched for; none where it is slight.
+    pub detail: Option<u32>,
     /// Force [N] on it, and torque [N m] about the centre, but for its own friction.
-    load_n: Vec3,
-    load_torque_n_m: Vec3,
-    /// Mean of r rᵀ about the centre, weighted by pressure [m²].
-    pub second_moment_m2: Mat3,
+    pub load_n: Vec3,
+    pub load_torque_n_m: Vec3,
     /// Whether one of both blocks deforms.
     pub deforms: bool,
-    pub spread: Spread,
-    /// Friction of the last step, turned with the face; none at first touch.
-    pub previous: Option<Friction>,
     /// Slip that loads other than contact bring within a step from rest: less is not resolved [m].
-    least_slip_m: f64,
+    pub least_slip_m: f64,
     /// Turn about the normal in this step, where it is found from the motion of the blocks.
     pub turn_rad: Option<f64>,
     /// Friction of this step [N, N m], and whether it is all that there may be.
     pub force_n: Vec3,
     pub torque_n_m: f64,
     pub slides: bool,
+}
+
+/// What is to be known of a patch whose friction is searched for.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct PatchDetail {
+    /// Number of the patch, and the end of its facets among those of all such patches.
+    pub patch: u32,
+    pub end: u32,
+    /// The axes of the pressure, and the normal; what friction can carry along them.
+    pub axes: [Vec3; 3],
+    pub surface: LimitSurface,
+    /// How its friction is spread.
+    pub spread: Spread,
+    /// Friction of the last step, turned with the face; none at first touch.
+    pub previous: Option<Friction>,
 }
 
 /// Friction of a patch.
@@ -111,15 +129,14 @@ impl ContactPatch {
         &mut self,
         (run, facets): (&[Place], &PatchFacets),
         scene: &PatchScene,
-        (forces, own): (&[FacetForce], &[Mat3]),
-        remembered: &mut Remembered,
+        forces: &[FacetForce],
     ) {
         let (&PatchFacets { owner, target, .. }, law) = (facets, scene.law(run));
         let deforms = |block: BlockId| scene.input.bodies[block.index()].deforms;
         let (has_law, deforms) = (law.is_some() && facets.weight > 0.0, deforms(owner) || deforms(target));
         *self = Self { owner, target, has_law, deforms, ..Self::default() };
         self.sum(run, scene, forces);
-        self.measure(run, scene, forces, own);
+        self.add_loads(run, scene, forces);
         if !self.has_friction() {
             return;
         }
@@ -129,11 +146,6 @@ impl ContactPatch {
         };
         self.least_slip_m = scene.input.dt_s.powi(2) * load_m_s2(owner).max(load_m_s2(target));
         self.most_n = law.map_or(0.0, |law| self.capacity_n(law, facets.weight));
-        self.find_spread(run, scene, (forces, own));
-        let (axes, second_moment_m2) = self.principal_axes(run, scene, forces);
-        (self.axes, self.surface) = (axes, LimitSurface::new(self.most_n, second_moment_m2));
-        let old = remembered.of(facets).filter(|old| old.normal.dot(&self.normal) > 0.0);
-        self.previous = old.map(|old| old.turned_to(&self.normal));
     }
 
     /// The record of this patch for the next step, under its face and target block; without a normal where no friction was computed, since neither block can move.
@@ -144,7 +156,7 @@ impl ContactPatch {
     }
 
     pub(super) fn summary(&self) -> PatchSummary {
-        let (has_friction, most_n) = (self.has_friction(), self.surface.most_n);
+        let (has_friction, most_n) = (self.has_friction(), self.most_n);
         PatchSummary { owner: self.owner, target: self.target, has_friction, most_n, tolerance_n: 0.0 }
     }
 
@@ -153,47 +165,9 @@ impl ContactPatch {
         self.has_law && self.pressure > 0.0 && self.area_m2 > 0.0
     }
 
-    /// Mean square distance of the pressure from its centre [m²].
-    pub(super) fn radius2(&self) -> f64 {
-        self.second_moment_m2.trace()
-    }
-
     /// 1 for a facet of the owner, −1 for one of the target.
     pub(super) fn sign_of(&self, touch: &ActiveFacet) -> f64 {
         if touch.owner == self.owner { 1.0 } else { -1.0 }
-    }
-
-    /// How its friction is spread, once it is known where it presses; `own` are the second moments of facets about their own centres.
-    fn find_spread(&mut self, run: &[Place], scene: &PatchScene, (forces, own): (&[FacetForce], &[Mat3])) {
-        let own_radius2_m2 = |t: u32| own[t as usize].trace();
-        let by_area = self.deforms.then(|| Spread::by_area(run, scene, (forces, own_radius2_m2))).flatten();
-        let (total, center, radius2_m2) = (self.pressure, self.center, self.radius2());
-        self.spread = by_area.unwrap_or(Spread { by_area: false, total, center, radius2_m2 });
-    }
-
-    /// Torque about the centre of the spread of a unit force along each axis that acts at the centre of pressure, over r [1].
-    pub(super) fn twist_of_force(&self) -> [f64; 2] {
-        let arm = self.spread.center - self.center;
-        [0, 1].map(|k| -self.normal.dot(&arm.cross(&self.axes[k])) / self.surface.radius_m)
-    }
-
-    /// Adds the patch's friction to one of its facets, of the owner or, with the opposite sign, of the target.
-    pub(super) fn spread_to(
-        &self,
-        force: &mut FacetForce,
-        (scene, t, own_radius2_m2): (&PatchScene, u32, f64),
-        sign: f64,
-    ) {
-        if self.has_friction() {
-            let Spread { by_area, total, center, radius2_m2 } = self.spread;
-            let torque_n_m = self.torque_n_m - self.normal.dot(&(center - self.center).cross(&self.force_n));
-            let twist = sign * torque_n_m / total / radius2_m2;
-            let arm = self.spread.center_of(scene, force, t) - center;
-            force.shear = sign * self.force_n / total + twist * self.normal.cross(&arm);
-            force.couple_n_m = self.spread.weight(scene, t) * twist * own_radius2_m2 * self.normal;
-            force.shear_by_area = by_area;
-            force.sticks = !self.slides;
-        }
     }
 
     /// Pushes its owner or, with the opposite sign, its target by the normal force, and by friction of facets.
@@ -202,50 +176,16 @@ impl ContactPatch {
         body.torque_n_m += sign * self.load_torque_n_m;
     }
 
-    /// Applies the patch's friction of the last step to a body.
-    pub(super) fn apply_previous_friction(&self, body: &mut Body, sign: f64) {
-        if let Some(old) = &self.previous {
-            body.push(&self.center, &(sign * old.force_n));
-            body.torque_n_m += sign * old.torque_n_m * self.normal;
-        }
-    }
-
-    /// Two unit vectors in the face along which the pressure has its principal second moments, the normal, and these moments [m²].
-    fn principal_axes(
-        &self,
-        run: &[Place],
-        scene: &PatchScene,
-        forces: &[FacetForce],
-    ) -> ([Vec3; 3], [f64; 2]) {
-        let [s, t] = tangents(&self.normal);
-        let (mean, spread, angle) = principal(&self.second_moment_m2, &[s, t]);
-        let angle = angle.unwrap_or_else(|| self.fourfold_angle(run, scene, forces, &[s, t]));
-        let (sin, cos) = angle.sin_cos();
-        let along = s * cos + t * sin;
-        // The lesser one is positive but for rounding.
-        let least = (mean - spread).max(1e-6 * mean);
-        ([along, self.normal.cross(&along), self.normal], [mean + spread, least])
-    }
-
-    /// Angle of the axes where both second moments are the same, as those of a square: it follows the facets, so that it turns with the blocks.
-    fn fourfold_angle(
-        &self,
-        run: &[Place],
-        scene: &PatchScene,
-        forces: &[FacetForce],
-        [s, t]: &[Vec3; 2],
-    ) -> f64 {
-        let corners = run.iter().map(|&(_, _, facet)| {
-            let arm = forces[facet as usize].center - self.center;
-            (scene.sums(facet).pressure.max(0.0), [s.dot(&arm), t.dot(&arm)])
-        });
-        fourfold_angle(corners)
-    }
-
     /// Energy [J] by which friction did less than Coulomb's law takes from a displacement of the surfaces, D(u, θ) + F·u + T θ ≥ 0: none where the
     /// patch sticks without slip or slides against its friction. `moved` are the displacements of the nodes [m]. Zero where a block deforms: its
     /// vibrations leave gaps in quiet contacts that are as large as those of impacts which the step does not resolve.
-    pub(super) fn coulomb_gap_j(&self, run: &[Place], scene: &Moved, forces: &[FacetForce]) -> f64 {
+    pub(super) fn coulomb_gap_j(
+        &self,
+        detail: Option<&PatchDetail>,
+        run: &[Place],
+        scene: &Moved,
+        forces: &[FacetForce],
+    ) -> f64 {
         if !self.has_friction() || self.deforms {
             return 0.0;
         }
@@ -262,15 +202,21 @@ impl ContactPatch {
                 twist += arm.cross(&slip).dot(&self.normal);
             }
         }
-        let radius_m = self.surface.radius_m;
+        let Some(PatchDetail { axes, surface, .. }) = detail else {
+            // A slight patch acts at its centre.
+            let shift = shift - self.normal * self.normal.dot(&shift);
+            let work_j = self.most_n * shift.norm() + self.force_n.dot(&shift);
+            return if shift.norm() <= self.least_slip_m { 0.0 } else { work_j.max(0.0) };
+        };
+        let radius_m = surface.radius_m;
         // Facets do not see their own spin, the motion of the blocks does.
         let spin = self.turn_rad.map_or(twist / radius_m, |turn_rad| turn_rad * radius_m);
-        let slip = Vec3::new(self.axes[0].dot(&shift), self.axes[1].dot(&shift), spin);
+        let slip = Vec3::new(axes[0].dot(&shift), axes[1].dot(&shift), spin);
         if slip.norm() <= self.least_slip_m {
             return 0.0;
         }
         let work_j = self.force_n.dot(&shift) + self.torque_n_m / radius_m * spin;
-        (self.surface.work_j(&slip) + work_j).max(0.0)
+        (surface.work_j(&slip) + work_j).max(0.0)
     }
 
     /// Most friction that a law allows [N].
@@ -303,8 +249,8 @@ impl ContactPatch {
         self.normal = -push.normalize();
     }
 
-    /// Loads, and second moments about the centre; a facet counts with its own size, so that one facet has some, too.
-    fn measure(&mut self, run: &[Place], scene: &PatchScene, forces: &[FacetForce], own: &[Mat3]) {
+    /// Loads about the centre.
+    fn add_loads(&mut self, run: &[Place], scene: &PatchScene, forces: &[FacetForce]) {
         for &(_, _, t) in run {
             let FacetMoments { pressure, .. } = *scene.sums(t);
             if pressure > 0.0 {
@@ -313,8 +259,6 @@ impl ContactPatch {
                 let (arm, load) = (center - self.center, sign * pressure * (push + shear));
                 self.load_n += load;
                 self.load_torque_n_m += arm.cross(&load);
-                let share = pressure / self.pressure;
-                self.second_moment_m2 += share * (arm * arm.transpose() + own[t as usize]);
             }
         }
     }
@@ -322,7 +266,7 @@ impl ContactPatch {
 
 impl FaceMemory {
     /// The memory turned with the normal, by the least rotation: c = a × b, v + c × v + c × (c × v)/(1 + a·b).
-    fn turned_to(self, normal: &Vec3) -> Friction {
+    pub(super) fn turned_to(self, normal: &Vec3) -> Friction {
         let (c, d) = (self.normal.cross(normal), 1.0 + self.normal.dot(normal));
         let in_plane = |v: Vec3| {
             let turned = v + c.cross(&v) + c.cross(&c.cross(&v)) / d;
@@ -348,7 +292,7 @@ impl<'a> Remembered<'a> {
     }
 
     /// That of a face on a block, none before the last one asked for.
-    fn of(&mut self, facets: &PatchFacets) -> Option<FaceMemory> {
+    pub(super) fn of(&mut self, facets: &PatchFacets) -> Option<FaceMemory> {
         let passed = self.rest.iter().take_while(|memory| Self::is_before(memory, facets)).count();
         self.rest = &self.rest[passed..];
         let found = |memory: &&FaceMemory| (memory.face, memory.target) == (facets.face, facets.target);

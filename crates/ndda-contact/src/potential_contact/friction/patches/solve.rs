@@ -16,9 +16,10 @@ use ndda_mesh::{BlockId, Mat3, Vec3};
 
 use crate::friction::patches::limit_surface::{LimitSurface, solved};
 use crate::friction::patches::nodal::{Nodal, NodalSide};
-use crate::friction::patches::patch::ContactPatch;
+use crate::friction::patches::patch::{ContactPatch, PatchDetail};
+use crate::friction::patches::solve::chunks::{Division, Left, Place};
 use crate::friction::patches::solve::newton::Newton;
-use crate::friction::patches::solve::stage::{Left, Visits, solve_stage};
+use crate::friction::patches::solve::stage::{Visits, solve_stage};
 use crate::model::Body;
 
 /// γ of Alexander's method.
@@ -55,21 +56,26 @@ pub(super) struct CoupledPatch {
     curvature: Option<Mat3>,
     /// Whether the friction is that of `free_slip`.
     is_found: bool,
+    /// Slip of the side whose block does not move.
+    held: Vec3,
+    /// Its place among all, and when it was visited last.
+    row: u32,
+    seen: u32,
 }
 
 impl CoupledPatch {
     /// A patch with its friction of the last step; none where nothing it touches can move.
     pub(super) fn new(
-        (number, patch, tolerance_n): (u32, &ContactPatch, f64),
+        (patch, detail, tolerance_n): (&ContactPatch, &PatchDetail, f64),
         (bodies, nodal): (&[Body], &Nodal),
         sides: [Option<NodalSide>; 2],
         dt_s: f64,
     ) -> Option<Self> {
-        let (axes, surface) = (patch.axes, patch.surface);
+        let (axes, surface) = (detail.axes, detail.surface);
         let [own, other] = [patch.owner, patch.target].map(|block| &bodies[block.index()]);
         let arms = [patch.center - own.center, patch.center - other.center];
         let mut found = Self {
-            patch: number,
+            patch: detail.patch,
             owner: patch.owner,
             target: patch.target,
             axes,
@@ -90,7 +96,7 @@ impl CoupledPatch {
             found.flexibility += Mat3::from_diagonal_element(REGULAR * found.flexibility.trace());
         }
         found.stiffness = found.flexibility.try_inverse().filter(|a| a.iter().all(|x| x.is_finite()))?;
-        if let Some(old) = &patch.previous {
+        if let Some(old) = &detail.previous {
             let twist = old.torque_n_m / surface.radius_m;
             found.force = Vec3::new(axes[0].dot(&old.force_n), axes[1].dot(&old.force_n), twist);
         }
@@ -110,9 +116,16 @@ impl CoupledPatch {
     }
 
     /// (V₁, V₂, Ω r).
-    fn slip(&self, motion: &Motion) -> Vec3 {
+    fn slip(&self, place: &mut Place) -> Vec3 {
+        let own = place.slip(self, 0).unwrap_or(self.held);
+        own - place.slip(self, 1).unwrap_or(self.held)
+    }
+
+    /// The same, from all that moves.
+    fn slip_in(&self, motion: &Motion) -> Vec3 {
+        let (sides, columns) = motion.nodal.blocks();
         let of = |block: BlockId, k: usize| match &self.sides[k] {
-            Some(side) => motion.nodal.slip(side),
+            Some(side) => side.slip(&sides[side.slot as usize], &columns[side.slot as usize]),
             None => self.slip_of(&motion.bodies[block.index()], &self.arms[k]),
         };
         of(self.owner, 0) - of(self.target, 1)
@@ -123,15 +136,6 @@ impl CoupledPatch {
         let velocity = body.velocity_m_s + body.spin_rad_s.cross(arm);
         let spin = self.surface.radius_m * body.spin_rad_s;
         Vec3::new(self.axes[0].dot(&velocity), self.axes[1].dot(&velocity), self.axes[2].dot(&spin))
-    }
-
-    /// Adds what a force of this patch changes velocities by in some time.
-    fn push(&self, motion: &mut Motion, force: &Vec3, time_s: f64) {
-        for (k, block) in self.blocks().into_iter().enumerate() {
-            let body = &mut motion.bodies[block.index()];
-            let columns = motion.nodal.columns_mut().get_mut(block.index()).map_or(&mut [][..], |all| all);
-            self.push_side(k, (body, columns), force, (time_s, time_s / motion.dt_s));
-        }
     }
 
     /// Adds what a force of this patch changes the velocity of its owner (`k` = 0) or target (1) by, in `time_s`, which is `part` of the step.
@@ -160,14 +164,6 @@ impl CoupledPatch {
                 nodal.push(side, &self.force, sign);
             }
         }
-    }
-
-    /// Friction of a patch that is [slight](super::patch::PatchSummary::is_slight): it opposes the slip of blocks that move as a whole.
-    pub(super) fn slight_friction(&mut self, bodies: &[Body]) {
-        let of = |block: BlockId, k: usize| self.slip_of(&bodies[block.index()], &self.arms[k]);
-        let slip = of(self.owner, 0) - of(self.target, 1);
-        self.force = self.surface.held_back(-(self.stiffness * slip));
-        self.first = self.force;
     }
 
     /// Turn of the owner against the target about the normal in the step, at the mean of the spins at both ends.
@@ -205,6 +201,8 @@ pub(super) struct Search {
 pub(super) struct Motion<'a> {
     pub bodies: &'a mut [Body],
     pub nodal: &'a mut Nodal,
+    /// How patches are divided among threads.
+    pub division: &'a Division,
     pub dt_s: f64,
     /// Whether the solver compares forces of one evaluation with the next.
     pub is_iterated: bool,
@@ -232,7 +230,18 @@ pub(super) fn solve(
 }
 
 impl Motion<'_> {
-    fn change(&mut self, start: &[Body], change: impl Fn(Vec3, Vec3) -> Vec3) {
+    /// The first block of each chunk but the first, as a place among those that answer.
+    fn slots_of(&self, starts: &[BlockId]) -> Vec<u32> {
+        let asked = self.nodal.asked();
+        starts.iter().map(|start| asked.partition_point(|block| block < start) as u32).collect()
+    }
+
+    /// Time within the step, and the part of the step that it is.
+    fn share(&self, time_s: f64) -> (f64, f64) {
+        (time_s, time_s / self.dt_s)
+    }
+
+    fn change(&mut self, start: &[Body], change: impl Fn(Vec3, Vec3) -> Vec3 + Sync) {
         for (from, to) in start.iter().zip(&mut *self.bodies) {
             to.velocity_m_s = change(from.velocity_m_s, to.velocity_m_s);
             to.spin_rad_s = change(from.spin_rad_s, to.spin_rad_s);
@@ -249,15 +258,29 @@ impl CoupledPatch {
         [self.owner, self.target]
     }
 
+    /// Whether a side is of a block that does not move by itself.
+    fn is_held(&self, k: usize, bodies: &[Body]) -> bool {
+        self.sides[k].is_none() && bodies[self.blocks()[k].index()].mass_kg.is_infinite()
+    }
+
+    /// Notes the slip of the side that does not move, at the beginning of a stage.
+    fn note_held(&mut self, bodies: &[Body]) {
+        for k in [0, 1] {
+            if self.is_held(k, bodies) {
+                self.held = self.slip_of(&bodies[self.blocks()[k].index()], &self.arms[k]);
+            }
+        }
+    }
+
     /// Friction of this patch while that of the others stays; by how much it changed, nothing where that is less than the tolerance.
-    fn advance(&mut self, motion: &mut Motion, time_s: f64, is_first: bool) -> Left {
-        let slip = self.slip(motion);
+    fn advance(&mut self, place: &mut Place, time: (f64, f64), is_first: bool) -> Left {
+        let slip = self.slip(place);
         let free_slip = slip - GAMMA * (self.flexibility * self.force);
         let change_n = (self.stiffness * (free_slip - self.free_slip)).amax() / GAMMA;
         if !is_first && self.is_found && change_n <= self.tolerance_n {
             return Left::default();
         }
-        motion.visits.count += 1;
+        place.found().visits += 1;
         let start = self.slip_for(&free_slip).unwrap_or(slip);
         (self.free_slip, self.is_found) = (free_slip, true);
         self.surface.watch(&free_slip, is_first);
@@ -269,11 +292,11 @@ impl CoupledPatch {
         self.found_slip = free_slip + GAMMA * (self.flexibility * force);
         let change = force - self.force;
         self.force = force;
-        self.push(motion, &change, time_s);
+        place.push(self, &change, time);
         if change.amax() <= self.tolerance_n {
             return Left::default();
         }
-        motion.visits.push(self.blocks());
+        place.note_push(self);
         Left { slip_m_s: GAMMA * (self.flexibility * change).amax(), times: change.amax() / self.tolerance_n }
     }
 
@@ -284,6 +307,7 @@ impl CoupledPatch {
     }
 }
 
+pub(super) mod chunks;
 pub(super) mod newton;
 pub(crate) mod stage;
 #[cfg(test)]

@@ -22,19 +22,21 @@ pub(super) struct Spread {
 }
 
 impl Spread {
-    /// By the area that touches, over the facets of a patch; none where nothing presses. `own_radius2_m2` is of a facet about its own centre.
+    /// By the area that touches, over the facets of a patch; none where nothing presses. `own_m2` is the mean square
+    /// distance of each facet's points from its own centre.
     pub(super) fn by_area(
         run: &[Place],
         scene: &PatchScene,
-        (forces, own_radius2_m2): (&[FacetForce], impl Fn(u32) -> f64),
+        (forces, own_m2): (&[FacetForce], &[f64]),
     ) -> Option<Self> {
         let mut spread = Self { by_area: true, ..Self::default() };
-        let pressing = || run.iter().map(|place| place.2).filter(|t| scene.sums(*t).pressure > 0.0);
-        spread.total = pressing().map(|t| spread.weight(scene, t)).sum();
+        let all = || run.iter().map(|place| place.2).zip(own_m2);
+        let pressing = || all().filter(|(t, _)| scene.sums(*t).pressure > 0.0);
+        spread.total = pressing().map(|(t, _)| spread.weight(scene, t)).sum();
         let share = |t: u32| spread.weight(scene, t) / spread.total;
         let center = |t: u32| spread.center_of(scene, &forces[t as usize], t);
-        let middle: Vec3 = pressing().map(|t| share(t) * center(t)).sum();
-        let radius2 = |t: u32| share(t) * ((center(t) - middle).norm_squared() + own_radius2_m2(t));
+        let middle: Vec3 = pressing().map(|(t, _)| share(t) * center(t)).sum();
+        let radius2 = |(t, own_m2): (u32, &f64)| share(t) * ((center(t) - middle).norm_squared() + own_m2);
         let radius2_m2 = pressing().map(radius2).sum();
         (spread.total > 0.0).then_some(Self { center: middle, radius2_m2, ..spread })
     }

@@ -12,9 +12,9 @@ mod coupling;
 use ndda_mesh::{Mat3, Vec3};
 use rayon::prelude::*;
 
+use crate::friction::patches::solve::chunks::{Place, each_patch};
 use crate::friction::patches::solve::newton::coupling::{Coupling, Places};
 use crate::friction::patches::solve::{CoupledPatch, GAMMA, Motion};
-use crate::model::Body;
 
 /// Steps of conjugate gradients at most.
 const MOST_STEPS: usize = 100;
@@ -35,8 +35,7 @@ struct Row {
     /// Slip that is left, and the friction that it asks for, P r.
     residual: Vec3,
     asked: Vec3,
-    /// f and y of the direction, and the change of slip that it brings, less that of y.
-    direction: Vec3,
+    /// y of the direction, and the change of slip that the direction brings, less that of y.
     cause: Vec3,
     product: Vec3,
     /// Change of its slip by its own friction alone.
@@ -49,33 +48,14 @@ struct Row {
     slip_before: Vec3,
 }
 
-/// Velocities or slips of blocks that deform, set aside.
-#[derive(Default)]
-struct KeptVelocities(Vec<Vec3>);
-
-impl KeptVelocities {
-    fn keep(&mut self, motion: &mut Motion) {
-        self.0.clear();
-        motion.nodal.each_velocity(|velocities, _| self.0.extend_from_slice(velocities));
-    }
-
-    fn put_back(&self, motion: &mut Motion) {
-        let mut left = &self.0[..];
-        motion.nodal.each_velocity(|velocities, _| {
-            let (first, rest) = left.split_at(velocities.len());
-            velocities.copy_from_slice(first);
-            left = rest;
-        });
-    }
-}
-
 /// Room for Newton's method.
 #[derive(Default)]
 pub(in crate::friction::patches) struct Newton {
     rows: Vec<Row>,
+    /// f of the direction.
+    directions: Vec<Vec3>,
     coupling: Coupling,
     sums: Vec<(f64, bool)>,
-    kept: KeptVelocities,
     /// Residual r·P r with which the system before this one began; none for the first of a stage.
     before: Option<f64>,
 }
@@ -92,11 +72,13 @@ impl CoupledPatch {
 
 impl Newton {
     /// Takes the patches of a stage.
-    pub(super) fn begin(&mut self, patches: &[CoupledPatch], bodies: &[Body], time_s: f64) {
+    pub(super) fn begin(&mut self, patches: &[CoupledPatch], motion: &Motion, time_s: f64) {
         self.before = None;
-        let Self { rows, coupling, .. } = self;
+        let Self { rows, directions, coupling, .. } = self;
         rows.clear();
-        coupling.begin(patches, bodies, time_s, |places| {
+        directions.clear();
+        directions.resize(patches.len(), Vec3::zeros());
+        coupling.begin(patches, motion, time_s, |places| {
             let patch = &patches[rows.len()];
             let (own, found_n) = (GAMMA * patch.flexibility, FOUND * patch.tolerance_n);
             rows.push(Row { own, found_n, places, ..Row::default() });
@@ -105,52 +87,58 @@ impl Newton {
 
     /// One of its steps, from what the last visit of each patch has found.
     pub(super) fn step(&mut self, patches: &mut [CoupledPatch], motion: &mut Motion, time_s: f64) {
+        let all = &*motion;
         let left = |(row, patch): (&mut Row, &CoupledPatch)| {
-            (row.before, row.slip_before) = (patch.force, patch.slip(motion));
+            (row.before, row.slip_before) = (patch.force, patch.slip_in(all));
             let free_slip = row.slip_before - row.own * patch.force;
             (row.residual, row.change) = (patch.free_slip - free_slip, Vec3::zeros());
             row.response = patch.response();
             row.asked = row.response * row.residual;
-            (row.direction, row.cause) = (Vec3::zeros(), Vec3::zeros());
+            row.cause = Vec3::zeros();
         };
         self.rows.par_iter_mut().zip(&*patches).with_min_len(GRAIN_PATCHES).for_each(left);
-        self.kept.keep(motion);
-        self.iterate(patches, motion, time_s);
-        self.kept.put_back(motion);
-        for (row, patch) in self.rows.iter().zip(&mut *patches) {
+        self.directions.fill(Vec3::zeros());
+        self.iterate(motion, time_s);
+        let time = motion.share(time_s);
+        let rows = &self.rows;
+        each_patch(patches, motion, true, |patch, place| {
+            let row = &rows[patch.row as usize];
             patch.force += row.change;
-            patch.push(motion, &row.change, time_s);
+            place.push(patch, &row.change, time);
             // Its friction is to be looked at again, unless it sticks for sure.
             patch.is_found = patch.curvature.is_none() && patch.surface.holds(&patch.force);
             if patch.is_found {
                 patch.free_slip = -(row.own * patch.force);
             }
-        }
+        });
     }
 
     /// Whether the last step, and the visits since, have brought the minimum nearer, or changed nothing that matters. Of the dual problem, ½ f·W f + f·s over all
     /// forces within their limits, they change the value by ½ Δf·(slips before + slips after), which friction within its tolerance does not make exact.
-    pub(super) fn gains(&self, patches: &[CoupledPatch], motion: &Motion) -> bool {
-        let change = |(row, patch): (&Row, &CoupledPatch)| {
-            let slips = row.slip_before + patch.slip(motion);
-            (patch.force - row.before).dot(&slips) - patch.tolerance_n * slips.abs().sum()
+    pub(super) fn gains(&self, patches: &mut [CoupledPatch], motion: &mut Motion) -> bool {
+        let change = |patch: &mut CoupledPatch, place: &mut Place| {
+            let row = &self.rows[patch.row as usize];
+            let slips = row.slip_before + patch.slip(place);
+            place.found().sum +=
+                (patch.force - row.before).dot(&slips) - patch.tolerance_n * slips.abs().sum();
         };
-        self.rows.iter().zip(patches).map(change).sum::<f64>() <= 0.0
+        each_patch(patches, motion, true, change).sum <= 0.0
     }
 
     /// Takes the last step back, and the visits since: all patches are to be visited again.
     pub(super) fn take_back(&self, patches: &mut [CoupledPatch], motion: &mut Motion, time_s: f64) {
-        for (row, patch) in self.rows.iter().zip(patches) {
+        let time = motion.share(time_s);
+        each_patch(patches, motion, true, |patch, place| {
+            let row = &self.rows[patch.row as usize];
             let change = row.before - patch.force;
-            (patch.force, patch.is_found) = (row.before, false);
-            patch.push(motion, &change, time_s);
-        }
-        motion.visits.forget();
+            (patch.force, patch.is_found, patch.seen) = (row.before, false, 0);
+            place.push(patch, &change, time);
+        });
     }
 
     /// Conjugate gradients.
-    fn iterate(&mut self, patches: &[CoupledPatch], motion: &mut Motion, time_s: f64) {
-        let (mut now, mut is_found) = self.sum(|row, _| (row.residual.dot(&row.asked), row.is_found()));
+    fn iterate(&mut self, motion: &Motion, time_s: f64) {
+        let (mut now, mut is_found) = self.sum(|row, _, _| (row.residual.dot(&row.asked), row.is_found()));
         // Eisenstat & Walker 1996, second choice: no closer than the last step was worth.
         let [most, least] = FORCING;
         let part = self.before.map_or(most, |before| (now / before).clamp(least, most));
@@ -161,23 +149,23 @@ impl Newton {
             if is_found || now.is_nan() || now <= enough {
                 return;
             }
-            self.rows.par_iter_mut().with_min_len(GRAIN_PATCHES).for_each(|row| {
-                row.direction = row.asked + back * row.direction;
+            let each = self.rows.par_iter_mut().zip(&mut self.directions).with_min_len(GRAIN_PATCHES);
+            each.for_each(|(row, direction)| {
+                *direction = row.asked + back * *direction;
                 row.cause = row.residual + back * row.cause;
             });
-            let Self { rows, coupling, .. } = self;
-            coupling.answer(patches, motion, time_s, |row| rows[row as usize].direction);
-            let (work, _) = self.sum(|row, coupling| {
-                row.product = coupling.slip(&row.places) + row.cause - row.own * row.direction;
-                (row.product.dot(&row.direction), true)
+            self.coupling.answer(motion, time_s, &self.directions);
+            let (work, _) = self.sum(|row, direction, coupling| {
+                row.product = coupling.slip(&row.places) + row.cause - row.own * direction;
+                (row.product.dot(direction), true)
             });
             let length = now / work;
             if !(length > 0.0 && length.is_finite()) {
                 return;
             }
             let old = now;
-            (now, is_found) = self.sum(|row, _| {
-                row.change += length * row.direction;
+            (now, is_found) = self.sum(|row, direction, _| {
+                row.change += length * direction;
                 row.residual -= length * row.product;
                 row.asked = row.response * row.residual;
                 (row.residual.dot(&row.asked), row.is_found())
@@ -187,14 +175,15 @@ impl Newton {
     }
 
     /// Sum over all rows, after some work on each, and whether all of them say so: by parts that do not depend on the number of threads.
-    fn sum(&mut self, work: impl Fn(&mut Row, &Coupling) -> (f64, bool) + Sync) -> (f64, bool) {
-        let Self { rows, coupling, sums, .. } = self;
-        let parts = rows.par_chunks_mut(GRAIN_PATCHES).map(|rows| {
-            let add = |(sum, all): (f64, bool), row: &mut Row| {
-                let (part, is_so) = work(row, coupling);
+    fn sum(&mut self, work: impl Fn(&mut Row, &Vec3, &Coupling) -> (f64, bool) + Sync) -> (f64, bool) {
+        let Self { rows, directions, coupling, sums, .. } = self;
+        let each = rows.par_chunks_mut(GRAIN_PATCHES).zip(directions.par_chunks(GRAIN_PATCHES));
+        let parts = each.map(|(rows, directions)| {
+            let add = |(sum, all): (f64, bool), (row, direction): (&mut Row, &Vec3)| {
+                let (part, is_so) = work(row, direction, coupling);
                 (sum + part, all & is_so)
             };
-            rows.iter_mut().fold((0.0, true), add)
+            rows.iter_mut().zip(directions).fold((0.0, true), add)
         });
         parts.collect_into_vec(sums);
         sums.iter().fold((0.0, true), |(sum, all), (part, is_so)| (sum + part, all & is_so))

@@ -1,7 +1,6 @@
 //! One of both minima: visits of patch after patch, and Newton's method for all where these take long.
 
-use ndda_mesh::BlockId;
-
+use crate::friction::patches::solve::chunks::{Left, each_patch};
 use crate::friction::patches::solve::newton::Newton;
 use crate::friction::patches::solve::{CoupledPatch, GAMMA, Motion, Search};
 
@@ -40,44 +39,18 @@ pub(crate) fn visits_eased(patches: usize, is_iterated: bool) -> usize {
 /// Which patches are to be visited: those of which a block was pushed by more than a tolerance since the last visit.
 #[derive(Default)]
 pub(crate) struct Visits {
-    /// When each patch was visited last.
-    seen: Vec<u32>,
     /// When each block was pushed last.
-    pushed: Vec<u32>,
-    now: u32,
+    pub(super) pushed: Vec<u32>,
+    pub(super) now: u32,
     /// Patches whose friction was looked for.
     pub(super) count: usize,
 }
 
 impl Visits {
-    fn begin(&mut self, patches: usize, blocks: usize) {
-        self.seen.clear();
-        self.seen.resize(patches, 0);
+    fn begin(&mut self, blocks: usize) {
         self.pushed.clear();
         self.pushed.resize(blocks, 1);
         (self.now, self.count) = (1, 0);
-    }
-
-    /// Lets all patches be visited again.
-    pub(super) fn forget(&mut self) {
-        self.seen.fill(0);
-    }
-
-    /// Whether a patch between two blocks is to be visited, which it then is.
-    fn visit(&mut self, patch: usize, [owner, target]: [BlockId; 2]) -> bool {
-        let is_due = self.pushed[owner.index()].max(self.pushed[target.index()]) > self.seen[patch];
-        if is_due {
-            self.now += 1;
-            self.seen[patch] = self.now;
-        }
-        is_due
-    }
-
-    /// Notes that the patch that is visited pushes its blocks.
-    pub(super) fn push(&mut self, blocks: [BlockId; 2]) {
-        for block in blocks {
-            self.pushed[block.index()] = self.now;
-        }
     }
 }
 
@@ -87,7 +60,12 @@ pub(super) fn solve_stage(patches: &mut [CoupledPatch], motion: &mut Motion, new
     let most_visits = if motion.is_iterated { ITERATED_VISITS_EACH } else { MOST_VISITS_EACH } * count;
     let most_visits = most_visits.max(MOST_VISITS);
     let most_sweeps = SHORT_SWEEPS * most_visits / count.max(1);
-    motion.visits.begin(count, motion.bodies.len());
+    motion.visits.begin(motion.bodies.len());
+    let bodies = &*motion.bodies;
+    for (row, patch) in (0..).zip(&mut *patches) {
+        (patch.row, patch.seen) = (row, 0);
+        patch.note_held(bodies);
+    }
     let (mut sweeps, mut left) = (0, Left::default());
     let (mut steps, mut is_tried, mut between) = (0, false, VISITS_BETWEEN * count);
     let mut next = motion.alone;
@@ -106,38 +84,28 @@ pub(super) fn solve_stage(patches: &mut [CoupledPatch], motion: &mut Motion, new
         let has_room = motion.visits.count + (1 + VISITS_BETWEEN) * count < most_visits;
         if motion.visits.count >= next && steps < NEWTON_STEPS && has_room {
             if steps == 0 {
-                newton.begin(patches, motion.bodies, time_s);
+                newton.begin(patches, motion, time_s);
             }
             newton.step(patches, motion, time_s);
-            motion.visits.forget();
+            patches.iter_mut().for_each(|patch| patch.seen = 0);
             (steps, is_tried, next) = (steps + 1, true, motion.visits.count + between);
         }
     }
     Search { visits: motion.visits.count, left_m_s: left.slip_m_s }
 }
 
-/// Largest change of a visit: of a slip [m/s], and of friction as a multiple of what does not matter; none where no patch changed by more than that.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Left {
-    pub slip_m_s: f64,
-    pub times: f64,
-}
-
 /// A sweep over all patches that are to be visited, to and fro by turns.
 fn sweep(patches: &mut [CoupledPatch], motion: &mut Motion, time_s: f64, number: usize) -> Left {
-    let mut left = Left::default();
-    let mut visit = |k: usize, patch: &mut CoupledPatch| {
-        if motion.visits.visit(k, patch.blocks()) {
-            let of_patch = patch.advance(motion, time_s, number == 0);
+    let time = motion.share(time_s);
+    let found = each_patch(patches, motion, number.is_multiple_of(2), |patch, place| {
+        if place.pushed(patch) > patch.seen {
+            patch.seen = place.next();
+            let of_patch = patch.advance(place, time, number == 0);
+            let left = &mut place.found().left;
             left.slip_m_s = left.slip_m_s.max(of_patch.slip_m_s);
             left.times = left.times.max(of_patch.times);
         }
-    };
-    let each = patches.iter_mut().enumerate();
-    if number.is_multiple_of(2) {
-        each.for_each(|(k, patch)| visit(k, patch));
-    } else {
-        each.rev().for_each(|(k, patch)| visit(k, patch));
-    }
-    left
+    });
+    motion.visits.count += found.visits;
+    found.left
 }

@@ -1,0 +1,111 @@
+//! Friction that is found for all faces of a step at once: once it is known, it is added to the nodes of blocks, block by block.
+
+use std::ops::Range;
+
+use ndda_mesh::{BlockId, Vec3};
+use rayon::prelude::*;
+
+use crate::affine::convex_target::AffineConvexTarget;
+use crate::assembly::couples::CoupleScene;
+use crate::assembly::join_if::join_if;
+use crate::assembly::nodal_forces::{ScatterScene, split};
+use crate::friction::patches::FrictionPatches;
+use crate::model::ContactOutput;
+
+/// Facets per half, and nodes, below which a second thread costs more than it brings.
+const GRAIN_FACETS: usize = 200;
+const GRAIN_NODES: usize = 1 << 13;
+
+/// Adds forces to those on each node.
+pub(crate) fn add_all(force: &mut [Vec3], others: &[Vec3]) {
+    let each = force.par_iter_mut().zip(others).with_min_len(GRAIN_NODES);
+    each.for_each(|(force, other)| *force += other);
+}
+
+/// Adds the friction of patches that was searched for to the nodes.
+pub(crate) fn add(scene: &ScatterScene, faces: &FrictionPatches, output: &mut ContactOutput) {
+    let all = ContactOutput {
+        force: output.force,
+        friction_force: output.friction_force,
+        stiffness: output.stiffness,
+    };
+    add_blocks(scene, faces, 0..scene.blocks.len(), all);
+}
+
+/// Adds it to the nodes of some blocks, which `output` begins with.
+fn add_blocks(scene: &ScatterScene, faces: &FrictionPatches, blocks: Range<usize>, output: ContactOutput) {
+    match scene.adjacency.count(&blocks) {
+        0 => {}
+        _ if blocks.len() == 1 => add_block(scene, faces, BlockId(blocks.start as u32), output),
+        _ => {
+            let middle = blocks.start + blocks.len() / 2;
+            let (head, tail) = (blocks.start..middle, middle..blocks.end);
+            let starts = scene.blocks.node_starts();
+            let (first, second) = split(output, (starts[middle] - starts[blocks.start]) as usize);
+            let parallel = scene.adjacency.count(&head).min(scene.adjacency.count(&tail)) > GRAIN_FACETS;
+            join_if(
+                parallel,
+                || add_blocks(scene, faces, head, first),
+                || add_blocks(scene, faces, tail, second),
+            );
+        }
+    }
+}
+
+fn add_block(scene: &ScatterScene, faces: &FrictionPatches, block: BlockId, output: ContactOutput) {
+    let first = scene.blocks.nodes_of(block).start;
+    let whole = scene.hulls.affine_target(block);
+    let ContactOutput { force, friction_force, .. } = output;
+    for t in faces.searched_facets(block) {
+        each_force(scene, (t as usize, block, whole), |node, added| {
+            force[node - first] += added;
+            if let Some(sum) = friction_force.get_mut(node - first) {
+                *sum += added;
+            }
+        });
+    }
+}
+
+/// The friction of a facet on each node of a block: its own, or, with the opposite sign, the target.
+fn each_force(
+    scene: &ScatterScene,
+    (t, block, whole): (usize, BlockId, Option<&AffineConvexTarget>),
+    mut add: impl FnMut(usize, Vec3),
+) {
+    let (touch, force) = (&scene.integrals.touching()[t], &scene.forces[t]);
+    if !force.touches {
+        return;
+    }
+    let is_owner = touch.owner == block;
+    if is_owner {
+        let sums = scene.integrals.sums_of(touch);
+        let weights = force.friction_shares(&sums.weights, &sums.slope);
+        match whole.and_then(|_| scene.hulls.contactor(touch.triangle, touch.target)) {
+            None => {
+                let nodes = &scene.blocks.triangles[touch.triangle.index()];
+                nodes.iter().zip(weights).for_each(|(node, share)| add(node.index(), *share * force.shear));
+            }
+            Some(face) if weights.iter().sum::<f64>() > 0.0 => {
+                let shares = face.shares(weights);
+                shares.iter().for_each(|(node, share)| add(node.index(), *share * force.shear));
+            }
+            Some(_) => {}
+        }
+    } else if let Some(whole) = whole {
+        let on_host = &scene.on_host[t];
+        let weights = force.friction_shares(&on_host.pressure, &on_host.slope);
+        let host = &scene.blocks.tets[whole.host.index()];
+        host.iter().zip(weights).for_each(|(node, share)| add(node.index(), -*share * force.shear));
+    } else {
+        for overlap in scene.integrals.overlaps_of(touch) {
+            let weights = force.friction_shares(&overlap.on_target.pressure, &overlap.on_target.slope);
+            let nodes = &scene.blocks.tets[overlap.tet.index()];
+            nodes.iter().zip(weights).for_each(|(node, share)| add(node.index(), -*share * force.shear));
+        }
+    }
+    if let Some(position) = scene.position.filter(|_| force.couple_n_m != Vec3::zeros()) {
+        let couple_n_m = if is_owner { force.couple_n_m } else { -force.couple_n_m };
+        let ScatterScene { blocks, integrals, hulls, .. } = *scene;
+        CoupleScene { blocks, position, integrals, hulls }.each_force(touch, is_owner, &couple_n_m, add);
+    }
+}
