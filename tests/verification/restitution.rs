@@ -31,9 +31,12 @@ struct Bounce {
 
 impl Bounce {
     /// Two smooth fields, or two volumes of one half, of slope 1 over a metre; four heights of the paper's potential in a cube of two cells.
+    fn stiffness_pa_m(&self) -> f64 {
+        if self.potential == "Element" { 27.7 * self.penalty_pa } else { 2.0 * self.penalty_pa }
+    }
+
     fn step_s(&self) -> f64 {
-        let per_metre = if self.potential == "Element" { 27.7 } else { 2.0 };
-        self.h / (per_metre * self.penalty_pa / DENSITY_KG_M3).sqrt()
+        self.h / (self.stiffness_pa_m() / DENSITY_KG_M3).sqrt()
     }
 
     fn simulation(&self) -> Simulation {
@@ -49,22 +52,21 @@ impl Bounce {
                  velocity_m_s: (0, 0, -{SPEED_M_S})),
               ],
               contact: Potential(penalty_pa: {penalty_pa:e}, potential: {potential}, restitution: {restitution}))",
-            2.5e5 * penalty_pa
+            1.25e5 * self.stiffness_pa_m()
         ))
     }
 
     /// Bound of the error of the rebound. Explicit contact holds back h²/4 of its energy, h = ω Δt, at either end of it: h²/8 of the speed. Stiff rock takes some for its own
-    /// vibrations, by the part that contact's stiffness is of its own: 27.7/2.5e5 at most. The field of `Smooth` is linear but for the depth v/ω over L₀, the energy of
+    /// vibrations, by the part that contact's stiffness is of its own, 1/1.25e5. The field of `Smooth` is linear but for the depth v/ω over L₀, the energy of
     /// contact by as much, and the rebound by a quarter of it. Where nothing is to come back, what the blow leaves of vibrations in a cube that deforms counts as
-    /// rebound: docs/theory/contact.md says 0.01 in all, 0.015 for `Element`, which pushes on few nodes.
+    /// rebound: docs/theory/contact.md says 0.01 in all.
     fn error(&self) -> f64 {
         let bends = match (self.restitution == 0.0 && self.body != "Rigid", self.potential) {
-            (true, "Element") => return 0.015 - LEAST,
             (true, _) => return 0.01 - LEAST,
             (_, "Smooth(reference_m: 1)") => 0.25 * SPEED_M_S * self.step_s() / self.h,
             _ => 0.0,
         };
-        0.125 * self.h * self.h + 1.1e-4 + bends
+        0.125 * self.h * self.h + 8e-6 + bends
     }
 
     /// Speed after over that before, and the largest work of damping in a step over the energy of the impact, which never gives energy.
@@ -107,14 +109,12 @@ fn a_cube_rebounds_by_the_coefficient_whatever_its_body_the_potential_the_penalt
                     let what = format!("rebound, e = {restitution}, {body}, {potential}, ω Δt = {h}");
                     row(CASE, &what, rebound, Near(restitution.max(LEAST), bounce.error()));
                 }
-                // Damping only takes: rounding of up to 20/0.02 steps. Stiff rock vibrates in itself under the blow, which the damping does not
-                // foresee, by the part that contact's stiffness is of its own: up to 27.7/2.5e5 = 1.1e-4.
-                let given_limit = if body == "Rigid" { rounding(1000) } else { 1e-4 };
+                // Damping only takes: rounding of up to 20/0.02 steps.
                 row(
                     CASE,
                     &format!("energy that damping gave in a step, e = {restitution}, {body}, {potential}"),
                     given,
-                    AtMost(given_limit),
+                    AtMost(rounding(1000)),
                 );
             }
         }
