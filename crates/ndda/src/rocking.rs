@@ -4,7 +4,7 @@
 //! holds them until the foot is there. Contact of penalty k_n gives way: where the base tilts by θ about a line s₀, pressures are 2 k_n θ (s − s₀)/L₀ beyond it,
 //! so that N = (2 k_n θ/L₀) ∫ (s − s₀) dA, and the foot is at ∫ s (s − s₀) dA/∫ (s − s₀) dA. The tilt moves the forces on by θ times their arm, so that
 //! they stand while some s₀ has foot(s₀) ≥ foot(a) + θ(s₀) arm. On a rectangle of half depth b and width w, and masses h high, that is up to
-//! a = g (b − 3 d/2)/h, d³ = 2 N h L₀/(9 k_n w), instead of g b/h.
+//! a = g (b − 3 d/2)/h, d³ = 2 N h (1 + a²/g²) L₀/(9 k_n w), instead of g b/h.
 
 use std::fmt;
 
@@ -296,15 +296,19 @@ mod tests {
         for cubes in [1, 3] {
             let found = shaken(cubes).unwrap();
             let (height_m, weight_n) = (0.5 * cubes as f64, 2.5e4 * cubes as f64);
-            let d_m = (2.0 * weight_n * height_m / (9.0 * PENALTY_PA)).cbrt();
+            let (rigid, mut soft) = (10.0 * 0.5 / height_m, 0.0);
+            for _ in 0..20 {
+                let arm_m = height_m * (1.0 + f64::powi(0.1 * soft, 2));
+                let d_m = (2.0 * weight_n * arm_m / (9.0 * PENALTY_PA)).cbrt();
+                soft = 10.0 * (0.5 - 1.5 * d_m) / height_m;
+            }
             // The places of s₀ are 4 % apart, and at the largest a they count by their square.
-            let (rigid, soft) = (10.0 * 0.5 / height_m, 10.0 * (0.5 - 1.5 * d_m) / height_m);
             assert!((found.rigid_m_s2 / rigid - 1.0).abs() < 1e-9, "{found:?}, {rigid}");
             assert!((found.rocks_at_m_s2 / soft - 1.0).abs() < 1e-4, "{found:?}, {soft}");
             assert!((found.peak_m_s2 - 3.0).abs() < 1e-12 && found.blocks_on_it == cubes - 1, "{found:?}");
-            // 12 halvings of eight decades.
+            // 12 halvings of eight decades, and an arm that changes by half a per cent with a.
             let advised_pa = PENALTY_PA * ((1.0 - soft / rigid) / ADVISED).powi(3).max(1.0);
-            assert!((found.advised_penalty_pa / advised_pa).log10().abs() < 4e-3, "{found:?}, {advised_pa}");
+            assert!((found.advised_penalty_pa / advised_pa).log10().abs() < 5e-3, "{found:?}, {advised_pa}");
         }
     }
 
