@@ -84,9 +84,8 @@ impl FacetScene<'_> {
         hits: &[OverlapPair],
         sums: &FacetMoments,
         (penalty_pa, dashpot_n): (f64, Option<&Vec3>),
-        (outcome, state): (&mut FacetOutcome, &mut [f64]),
+        (outcome, state): (Option<&mut FacetOutcome>, &mut [f64]),
     ) -> FacetForce {
-        *outcome = FacetOutcome::default();
         let mut force = FacetForce { facet: touch.facet, ..FacetForce::default() };
         if sums.pressure <= 0.0 {
             return force;
@@ -115,10 +114,10 @@ impl FacetScene<'_> {
         touch: &ActiveFacet,
         (hits, sums): (&[OverlapPair], &FacetMoments),
         (penalty_pa, dashpot_n, normal): (f64, Option<&Vec3>, &Vec3),
-        (force, outcome, state): (&mut FacetForce, &mut FacetOutcome, &mut [f64]),
+        (force, outcome, state): (&mut FacetForce, Option<&mut FacetOutcome>, &mut [f64]),
     ) {
         let law = joints.law(self.input.blocks, touch.triangle, touch.target);
-        let Some(law) = law.filter(|law| !law.acts_on_faces()) else { return };
+        let Some((law, outcome)) = law.filter(|law| !law.acts_on_faces()).zip(outcome) else { return };
         let corners = self.input.blocks.triangle_corners(touch.triangle, self.input.position);
         let basis = facet_basis(&corners, normal);
         let state = &mut state[..law.state_len()];
