@@ -251,7 +251,8 @@ pub(super) fn place_forces(
     state.resize(touching.len() * state_len, 0.0);
     let has_laws = state_len > 0 || scene.joints.is_some_and(|joints| !joints.act_on_faces_only());
     outcomes.resize(if has_laws { touching.len() } else { 0 }, FacetOutcome::default());
-    let place = |force: &mut FacetForce, t: usize, found: (&mut FacetOutcome, &mut [f64])| {
+    outcomes.fill(FacetOutcome::default());
+    let place = |force: &mut FacetForce, t: usize, found: (Option<&mut FacetOutcome>, &mut [f64])| {
         let (overlaps, sums) = (integrals.overlaps_of(&touching[t]), integrals.sums_of(&touching[t]));
         let pushes = (t, penalty_of_facet[t], dashpot_n.get(t));
         *force = scene.force(&touching[t], overlaps, sums, pushes, found);
@@ -260,12 +261,12 @@ pub(super) fn place_forces(
         let entries = forces.par_iter_mut().zip(outcomes).zip(state.par_chunks_mut(state_len)).enumerate();
         entries
             .with_min_len(GRAIN_FACETS / 2)
-            .for_each(|(t, ((force, outcome), state))| place(force, t, (outcome, state)));
+            .for_each(|(t, ((force, outcome), state))| place(force, t, (Some(outcome), state)));
     } else if has_laws {
         let entries = forces.par_iter_mut().zip(outcomes).enumerate().with_min_len(GRAIN_FACETS / 2);
-        entries.for_each(|(t, (force, outcome))| place(force, t, (outcome, &mut [])));
+        entries.for_each(|(t, (force, outcome))| place(force, t, (Some(outcome), &mut [])));
     } else {
-        for_each_facet(forces, |(t, force)| place(force, t, (&mut FacetOutcome::default(), &mut [])));
+        for_each_facet(forces, |(t, force)| place(force, t, (None, &mut [])));
     }
     on_host.clear();
     if hulls.count_affine() > 0 {

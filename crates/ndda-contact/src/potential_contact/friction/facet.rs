@@ -100,9 +100,8 @@ impl FacetScene<'_> {
         hits: &[OverlapPair],
         sums: &FacetMoments,
         (number, penalty_pa, dashpot_n): (usize, f64, Option<&Vec3>),
-        (outcome, state): (&mut FacetOutcome, &mut [f64]),
+        (outcome, state): (Option<&mut FacetOutcome>, &mut [f64]),
     ) -> FacetForce {
-        *outcome = FacetOutcome::default();
         let mut force = FacetForce { facet: touch.facet, ..FacetForce::default() };
         if sums.pressure <= 0.0 {
             return force;
@@ -132,11 +131,11 @@ impl FacetScene<'_> {
         touch: &ActiveFacet,
         (hits, sums): (&[OverlapPair], &FacetMoments),
         (penalty_pa, dashpot_n, (corners, normal)): (f64, Option<&Vec3>, (&[Vec3; 3], &Vec3)),
-        (force, outcome, state): (&mut FacetForce, &mut FacetOutcome, &mut [f64]),
+        (force, outcome, state): (&mut FacetForce, Option<&mut FacetOutcome>, &mut [f64]),
         number: usize,
     ) {
         let law = joints.law(self.input.blocks, touch.triangle, touch.target);
-        let Some(law) = law.filter(|law| !law.acts_on_faces()) else { return };
+        let Some((law, outcome)) = law.filter(|law| !law.acts_on_faces()).zip(outcome) else { return };
         let basis = facet_basis(corners, normal);
         let state = &mut state[..law.state_len()];
         let key = (touch.triangle, touch.target, self.element_of(hits));

@@ -85,6 +85,12 @@ impl Division {
         (self.colours[usize::from(a) * (self.starts.len() + 1) + usize::from(b)], [a, b])
     }
 
+    /// How many groups there are; none where patches are visited one after the other.
+    #[cfg(test)]
+    pub(super) fn groups(&self) -> usize {
+        self.groups.len()
+    }
+
     /// Takes the groups of patches, which are in their order, from the blocks of each that may move.
     pub(crate) fn take_groups(&mut self, blocks: impl Iterator<Item = [BlockId; 2]>) {
         self.groups.clear();

@@ -4,10 +4,12 @@ use crate::friction::patches::tolerance::Tolerance;
 
 const COLUMNS: usize = 6;
 const ROWS: usize = 4;
+/// Columns and rows of a wall whose patches are divided among threads.
+const LARGE: [usize; 2] = [70, 64];
 const DT_S: f64 = 1e-4;
 
 /// Cubes of a wall on a base that does not move, with velocities that all friction together may or may not stop.
-fn bodies() -> Vec<Body> {
+fn bodies([columns, rows]: [usize; 2]) -> Vec<Body> {
     let mut state = 1u64;
     let mut random = || {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -15,11 +17,11 @@ fn bodies() -> Vec<Body> {
     };
     let held = Body::at_rest(f64::INFINITY);
     let mut all = vec![held];
-    for k in 0..COLUMNS * ROWS {
+    for k in 0..columns * rows {
         all.push(Body {
             mass_kg: 2600.0,
             inverse_inertia: Mat3::identity() * (6.0 / 2600.0),
-            center: Vec3::new((k % COLUMNS) as f64, 0.0, (k / COLUMNS) as f64 + 0.5),
+            center: Vec3::new((k % columns) as f64, 0.0, (k / columns) as f64 + 0.5),
             velocity_m_s: 2e-3 * Vec3::new(1.0 + random(), random(), 0.0),
             spin_rad_s: 1e-3 * Vec3::new(random(), random(), random()),
             ..held
@@ -42,14 +44,14 @@ fn patch(
 }
 
 /// Faces on which cubes lie and stand beside each other, with a slight patch at an edge of each.
-fn patches() -> Vec<(ContactPatch, PatchDetail)> {
+fn patches([columns, rows]: [usize; 2]) -> Vec<(ContactPatch, PatchDetail)> {
     let (x, y, z) = (Vec3::x(), Vec3::y(), Vec3::z());
     let mut all = Vec::new();
-    for k in 0..COLUMNS * ROWS {
-        let (column, row) = (k % COLUMNS, k / COLUMNS);
-        let (block, below) = (k + 1, if row == 0 { 0 } else { k + 1 - COLUMNS });
+    for k in 0..columns * rows {
+        let (column, row) = (k % columns, k / columns);
+        let (block, below) = (k + 1, if row == 0 { 0 } else { k + 1 - columns });
         let foot = Vec3::new(column as f64, 0.0, row as f64);
-        let most_n = 15e3 * (ROWS - row) as f64;
+        let most_n = 15e3 * (rows - row) as f64;
         all.push(patch([block, below], foot, [x, y, z], most_n));
         all.push(patch([block, below], foot + 0.5 * x, [y, z, x], 2e-6 * most_n));
         if column > 0 {
@@ -67,6 +69,8 @@ struct Solved {
     /// Velocities with friction.
     end: Vec<Body>,
     search: Search,
+    /// How many groups threads visit side by side.
+    groups: usize,
 }
 
 /// The friction of all patches, which is that of each looked at alone where the search has ended.
@@ -76,23 +80,31 @@ fn solved(tolerance: f64) -> Solved {
 
 /// The same, with so many visits of each patch before Newton's method.
 fn solved_with(tolerance: f64, alone: usize) -> Solved {
-    let (start, mut end, mut nodal) = (bodies(), bodies(), Nodal::default());
-    let found = patches();
+    solved_wall([COLUMNS, ROWS], tolerance, alone)
+}
+
+/// The same of a wall of so many columns and rows.
+fn solved_wall(wall: [usize; 2], tolerance: f64, alone: usize) -> Solved {
+    let (start, mut end, mut nodal) = (bodies(wall), bodies(wall), Nodal::default());
+    let found = patches(wall);
     let summary = |patch: &ContactPatch| PatchSummary { has_friction: true, ..patch.summary() };
     let mut summaries: Vec<_> = found.iter().map(|(patch, _)| summary(patch)).collect();
     Tolerance::of_friction(tolerance).find(&mut summaries, &start, &mut Vec::new());
-    let mut coupled: Vec<_> = (0..)
-        .zip(found.iter().zip(&summaries))
-        .filter(|(_, (_, summary))| summary.matters())
-        .filter_map(|(k, ((patch, detail), summary))| {
-            let detail = PatchDetail { patch: k, ..*detail };
-            CoupledPatch::new((patch, &detail, summary.tolerance_n), (&start, &nodal), [None; 2], DT_S)
-        })
-        .collect();
+    let mut order: Vec<u32> =
+        (0..).zip(&summaries).filter(|each| each.1.matters()).map(|each| each.0).collect();
+    let (mut division, moving) = (Division::default(), |k: u32| summaries[k as usize].moving(&start));
+    division.divide(&mut order, moving);
+    let coupled = order.iter().filter_map(|&k| {
+        let ((patch, detail), summary) = (&found[k as usize], &summaries[k as usize]);
+        let detail = PatchDetail { patch: k, ..*detail };
+        CoupledPatch::new((patch, &detail, summary.tolerance_n), (&start, &nodal), [None; 2], DT_S)
+    });
+    let mut coupled: Vec<_> = coupled.collect();
+    division.take_groups(coupled.iter().map(|patch| moving(patch.patch)));
     let mut motion = Motion {
         bodies: &mut end,
         nodal: &mut nodal,
-        division: &Division::default(),
+        division: &division,
         dt_s: DT_S,
         is_iterated: false,
         visits: &mut Visits::default(),
@@ -105,7 +117,7 @@ fn solved_with(tolerance: f64, alone: usize) -> Solved {
         assert_alone_would_not_change(&mut coupled, &mut motion);
     }
     let friction = coupled.iter().map(|patch| (patch.patch, patch.friction().0)).collect();
-    Solved { friction, slight, end, search }
+    Solved { friction, slight, end, search, groups: division.groups() }
 }
 
 /// Each patch, looked at alone while the others keep their friction, has found its own.
@@ -149,5 +161,20 @@ fn slight_patches_leave_the_friction_of_others_within_the_tolerance() {
     let stopped = 1e-4 * most_n / 2600.0;
     for (a, b) in found.end.iter().zip(&exact.end) {
         assert!((a.velocity_m_s - b.velocity_m_s).norm() <= 10.0 * tolerance * stopped);
+    }
+}
+
+#[test]
+fn threads_that_visit_patches_side_by_side_find_the_same_friction_to_the_bit() {
+    let on = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| solved_wall(LARGE, 1e-5, stage::VISITS_ALONE))
+    };
+    let one = on(1);
+    assert!(one.groups > 4 && one.search.left_m_s == 0.0, "{} groups, {:?}", one.groups, one.search);
+    for threads in [2, 3] {
+        let other = on(threads);
+        assert_eq!(one.friction, other.friction);
+        assert_eq!(one.end, other.end);
     }
 }
