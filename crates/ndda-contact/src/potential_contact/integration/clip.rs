@@ -118,17 +118,20 @@ impl Polygon {
     }
 
     /// Adds a corner. Where there are as many already as there is room for, the rim is one that rounding made wavy, and its flattest corner gives way.
+    #[inline(always)]
     fn push(&mut self, corner: [f64; 2], most: usize) {
         if self.len == most.min(MOST) {
-            self.drop_flattest(&corner);
+            self.drop_flattest(corner);
         }
         self.corners[self.len] = corner;
         self.len += 1;
     }
 
     /// Drops the corner that takes the least area with it: those that a wavy rim has too many lie on the cut.
-    fn drop_flattest(&mut self, next: &[f64; 2]) {
-        let corner = |k: usize| if k == self.len { next } else { &self.corners[k] };
+    #[cold]
+    #[inline(never)]
+    fn drop_flattest(&mut self, next: [f64; 2]) {
+        let corner = |k: usize| if k == self.len { next } else { self.corners[k] };
         let area = |k: usize| {
             let ([x, y], [from_x, from_y], [to_x, to_y]) = (corner(k), corner(k - 1), corner(k + 1));
             ((x - from_x) * (to_y - y) - (y - from_y) * (to_x - x)).abs()
