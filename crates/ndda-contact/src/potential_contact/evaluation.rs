@@ -250,8 +250,8 @@ pub(super) fn place_forces(
     forces.resize(touching.len(), FacetForce::default());
     state.resize(touching.len() * state_len, 0.0);
     let has_laws = state_len > 0 || scene.joints.is_some_and(|joints| !joints.act_on_faces_only());
+    outcomes.clear();
     outcomes.resize(if has_laws { touching.len() } else { 0 }, FacetOutcome::default());
-    outcomes.fill(FacetOutcome::default());
     let place = |force: &mut FacetForce, t: usize, found: (Option<&mut FacetOutcome>, &mut [f64])| {
         let (overlaps, sums) = (integrals.overlaps_of(&touching[t]), integrals.sums_of(&touching[t]));
         let pushes = (t, penalty_of_facet[t], dashpot_n.get(t));

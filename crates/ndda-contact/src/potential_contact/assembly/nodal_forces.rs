@@ -64,26 +64,37 @@ impl ScatterScene<'_> {
 
 /// Adds all forces to the nodes.
 pub fn add(scene: &ScatterScene, output: &mut ContactOutput) {
-    let all = ContactOutput {
-        force: output.force,
-        friction_force: output.friction_force,
-        stiffness: output.stiffness,
-    };
-    add_blocks(scene, 0..scene.blocks.len(), all);
+    let ContactOutput { force, friction_force, stiffness } = output;
+    add_blocks(scene, 0..scene.blocks.len(), ContactOutput { force, friction_force, stiffness });
 }
 
 /// Adds the forces on some blocks to their nodes, which `output` begins with.
 pub(super) fn add_blocks(scene: &ScatterScene, blocks: Range<usize>, output: ContactOutput) {
+    each_block(scene, blocks, output, &|block, output| add_block(scene, block, output));
+}
+
+/// Does some work for each of some blocks that are in contact, with the output of its nodes: on all threads where blocks have many facets. `output` begins with
+/// the first block.
+pub(super) fn each_block(
+    scene: &ScatterScene,
+    blocks: Range<usize>,
+    output: ContactOutput,
+    work: &(impl Fn(BlockId, ContactOutput) + Sync),
+) {
     match scene.adjacency.count(&blocks) {
         0 => {}
-        _ if blocks.len() == 1 => add_block(scene, BlockId(blocks.start as u32), output),
+        _ if blocks.len() == 1 => work(BlockId(blocks.start as u32), output),
         _ => {
             let middle = blocks.start + blocks.len() / 2;
             let (head, tail) = (blocks.start..middle, middle..blocks.end);
             let starts = scene.blocks.node_starts();
             let (first, second) = split(output, (starts[middle] - starts[blocks.start]) as usize);
             let parallel = scene.adjacency.count(&head).min(scene.adjacency.count(&tail)) > GRAIN_FACETS;
-            join_if(parallel, || add_blocks(scene, head, first), || add_blocks(scene, tail, second));
+            join_if(
+                parallel,
+                || each_block(scene, head, first, work),
+                || each_block(scene, tail, second, work),
+            );
         }
     }
 }

@@ -1,19 +1,15 @@
 //! Friction that is found for all faces of a step at once: once it is known, it is added to the nodes of blocks, block by block.
 
-use std::ops::Range;
-
 use ndda_mesh::{BlockId, Vec3};
 use rayon::prelude::*;
 
 use crate::affine::convex_target::AffineConvexTarget;
 use crate::assembly::couples::CoupleScene;
-use crate::assembly::join_if::join_if;
-use crate::assembly::nodal_forces::{ScatterScene, split};
+use crate::assembly::nodal_forces::{ScatterScene, each_block};
 use crate::friction::patches::FrictionPatches;
 use crate::model::ContactOutput;
 
-/// Facets per half, and nodes, below which a second thread costs more than it brings.
-const GRAIN_FACETS: usize = 200;
+/// Nodes below which a second thread costs more than it brings.
 const GRAIN_NODES: usize = 1 << 13;
 
 /// Adds forces to those on each node.
@@ -24,32 +20,9 @@ pub(crate) fn add_all(force: &mut [Vec3], others: &[Vec3]) {
 
 /// Adds the friction of patches that was searched for to the nodes.
 pub(crate) fn add(scene: &ScatterScene, faces: &FrictionPatches, output: &mut ContactOutput) {
-    let all = ContactOutput {
-        force: output.force,
-        friction_force: output.friction_force,
-        stiffness: output.stiffness,
-    };
-    add_blocks(scene, faces, 0..scene.blocks.len(), all);
-}
-
-/// Adds it to the nodes of some blocks, which `output` begins with.
-fn add_blocks(scene: &ScatterScene, faces: &FrictionPatches, blocks: Range<usize>, output: ContactOutput) {
-    match scene.adjacency.count(&blocks) {
-        0 => {}
-        _ if blocks.len() == 1 => add_block(scene, faces, BlockId(blocks.start as u32), output),
-        _ => {
-            let middle = blocks.start + blocks.len() / 2;
-            let (head, tail) = (blocks.start..middle, middle..blocks.end);
-            let starts = scene.blocks.node_starts();
-            let (first, second) = split(output, (starts[middle] - starts[blocks.start]) as usize);
-            let parallel = scene.adjacency.count(&head).min(scene.adjacency.count(&tail)) > GRAIN_FACETS;
-            join_if(
-                parallel,
-                || add_blocks(scene, faces, head, first),
-                || add_blocks(scene, faces, tail, second),
-            );
-        }
-    }
+    let ContactOutput { force, friction_force, stiffness } = output;
+    let all = ContactOutput { force, friction_force, stiffness };
+    each_block(scene, 0..scene.blocks.len(), all, &|block, output| add_block(scene, faces, block, output));
 }
 
 fn add_block(scene: &ScatterScene, faces: &FrictionPatches, block: BlockId, output: ContactOutput) {

@@ -15,7 +15,7 @@ pub(crate) const STICKS: f64 = 1.0 - 1e-9;
 /// Places on either side at which a facet is looked for first.
 const NEAR: usize = 8;
 
-/// The forces of one facet per unit of ∫ φ N dA, and what it remembers.
+/// The forces of one facet per unit of ∫ φ N dA.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FacetForce {
     /// −k n: what the facet's normal force is made of [Pa].
@@ -38,7 +38,7 @@ pub struct FacetForce {
     pub facet: u32,
 }
 
-/// What a law that acts on facets finds beside the force.
+/// Results of a friction law on a facet, besides its force.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct FacetOutcome {
     /// Slip and work of the shear spring in the step, where there is one.

@@ -186,8 +186,7 @@ impl Scratch {
         for tet in facet.tets() {
             let slot = scene.candidates.slot_of(tet).wrapping_add(shift);
             let frame = scene.frames.at(slot);
-            let [x, y, z] =
-                [frame.lambda_at(&corners[0]), frame.lambda_at(&corners[1]), frame.lambda_at(&corners[2])];
+            let [x, y, z] = frame.lambda_by_corner(corners);
             let at = [&x, &y, &z];
             let (lambda, is_apart) = (by_face(at), some_face_separates(at));
             if (is_apart && !(pieces && lies_in_a_plane_of(frame, &lambda, normal)))

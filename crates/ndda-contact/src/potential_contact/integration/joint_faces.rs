@@ -2,8 +2,7 @@
 //!
 //! Of the pairs of a triangle and a tetrahedron near it that no single face separates, about a quarter do not meet all the same.
 
-/// One number for each face of a tetrahedron.
-type Faces = [f64; 4];
+use crate::integration::tet_frame::Faces;
 
 /// By how much a product has to exceed another to be larger whatever rounding did to both: what is left out has no area to the last digit.
 const CLEARLY: f64 = 1.0 + 1e-9;

@@ -3,7 +3,7 @@
 use ndda_mesh::Vec3;
 
 /// One number for each face of a tetrahedron; face b is opposite to corner b.
-type Faces = [f64; 4];
+pub(crate) type Faces = [f64; 4];
 
 /// A target tetrahedron as the kernel needs it; made once per step.
 ///
@@ -73,16 +73,23 @@ impl TetFrame {
     }
 
     /// λ_b at the corners of a triangle, as `[b][a]`.
-    pub fn lambda(&self, [x, y, z]: &[Vec3; 3]) -> [[f64; 3]; 4] {
-        by_face([&self.lambda_at(x), &self.lambda_at(y), &self.lambda_at(z)])
+    pub fn lambda(&self, corners: &[Vec3; 3]) -> [[f64; 3]; 4] {
+        let [x, y, z] = self.lambda_by_corner(corners);
+        by_face([&x, &y, &z])
     }
 
     /// The same, or nothing if a face separates the triangle from the tetrahedron.
     #[inline(always)]
-    pub fn lambda_inside(&self, [x, y, z]: &[Vec3; 3]) -> Option<[[f64; 3]; 4]> {
-        let (x, y, z) = (self.lambda_at(x), self.lambda_at(y), self.lambda_at(z));
+    pub fn lambda_inside(&self, corners: &[Vec3; 3]) -> Option<[[f64; 3]; 4]> {
+        let [x, y, z] = self.lambda_by_corner(corners);
         let at = [&x, &y, &z];
         if some_face_separates(at) { None } else { Some(by_face(at)) }
+    }
+
+    /// λ_b at the corners of a triangle, as `[a][b]`.
+    #[inline(always)]
+    pub(crate) fn lambda_by_corner(&self, [x, y, z]: &[Vec3; 3]) -> [Faces; 3] {
+        [self.lambda_at(x), self.lambda_at(y), self.lambda_at(z)]
     }
 
     /// Whether a triangle that lies in the plane of face b is to be counted in this tetrahedron: if the tetrahedron is

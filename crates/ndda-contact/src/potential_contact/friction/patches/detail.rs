@@ -1,4 +1,4 @@
-//! What is to be known of a patch whose friction is searched for: its axes, its limit surface, how friction is spread over its facets, and that of the last step.
+//! Details of patches whose friction is searched for: axes, limit surface, the spread of friction over facets, and the friction of the last step.
 
 use ndda_mesh::{Mat3, Vec3};
 
@@ -11,21 +11,21 @@ use crate::friction::patches::{GRAIN_PATCHES, PatchScene, Place};
 use crate::integration::overlap_pair::FacetMoments;
 use crate::model::{Body, ContactHistory};
 
-/// Facets of a patch, and what is known of them.
+/// The facets of one patch, with their forces and integrals.
 #[derive(Clone, Copy)]
-struct DetailScene<'a> {
+struct FacetsScene<'a> {
     scene: &'a PatchScene<'a>,
     forces: &'a [FacetForce],
     run: &'a [Place],
 }
 
 impl PatchDetail {
-    /// Finds it, and the mean square distance of each facet's points from its own centre of pressure [m²].
+    /// Finds the details of a patch, and the mean square distance of each facet's points from its own centre of pressure [m²].
     fn find(
         &mut self,
         patch: &ContactPatch,
         facets: &PatchFacets,
-        found: &DetailScene,
+        found: &FacetsScene,
         own_m2: &mut [f64],
         remembered: &mut Remembered,
     ) {
@@ -70,7 +70,7 @@ impl PatchDetail {
     }
 }
 
-impl DetailScene<'_> {
+impl FacetsScene<'_> {
     /// Mean of r rᵀ about the centre of a patch, weighted by pressure [m²]; a facet counts with its own size, so that one facet has some, too.
     fn second_moment_m2(&self, patch: &ContactPatch, own_m2: &mut [f64]) -> Mat3 {
         let Self { scene, forces, run } = *self;
@@ -126,9 +126,9 @@ pub(super) fn facets_of(details: &[PatchDetail], detail: u32) -> std::ops::Range
     start as usize..details[detail as usize].end as usize
 }
 
-/// What details are found from.
+/// All patches, with their facets and what they remember: input of the details.
 #[derive(Clone, Copy)]
-pub(super) struct DetailsScene<'a> {
+pub(super) struct DetailScene<'a> {
     pub scene: &'a PatchScene<'a>,
     pub forces: &'a [FacetForce],
     pub history: &'a ContactHistory,
@@ -137,8 +137,8 @@ pub(super) struct DetailsScene<'a> {
     pub order: &'a [Place],
 }
 
-impl DetailsScene<'_> {
-    /// Finds some, whose facets begin at `first`.
+impl DetailScene<'_> {
+    /// Finds some details, whose facets begin at `first`.
     pub(super) fn find(&self, details: &mut [PatchDetail], (first, own_m2): (u32, &mut [f64])) {
         if details.len() > GRAIN_PATCHES {
             let (head, tail) = details.split_at_mut(details.len() / 2);
@@ -155,7 +155,7 @@ impl DetailsScene<'_> {
             let (own_m2, rest) = left.split_at_mut(facets.places.len());
             left = rest;
             let run = &self.order[facets.places.clone()];
-            let found = DetailScene { scene: self.scene, forces: self.forces, run };
+            let found = FacetsScene { scene: self.scene, forces: self.forces, run };
             detail.find(patch, facets, &found, own_m2, &mut remembered);
         }
     }

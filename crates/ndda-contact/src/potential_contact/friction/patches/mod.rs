@@ -29,8 +29,8 @@ use crate::friction::bond::BondForce;
 use crate::friction::facet::FacetForce;
 use crate::friction::law::FrictionLaw;
 use crate::friction::law_table::FrictionLawTable;
-use crate::friction::patches::detail::{DetailsScene, facets_of};
-use crate::friction::patches::nodal::{Nodal, NodalSide, PatchOn, SideScene};
+use crate::friction::patches::detail::{DetailScene, facets_of};
+use crate::friction::patches::nodal::{Nodal, NodalSide, SearchedPatch, SideScene};
 use crate::friction::patches::opposite::Opposite;
 use crate::friction::patches::parts::FaceParts;
 use crate::friction::patches::patch::{ContactPatch, Moved, PatchDetail, PatchFacets, PatchSummary};
@@ -241,7 +241,7 @@ impl FrictionPatches {
         });
     }
 
-    /// Finds what is to be known of patches whose friction is searched for.
+    /// Finds the details of patches whose friction is searched for.
     fn find_details(&mut self, scene: &PatchScene, forces: &[FacetForce], history: &ContactHistory) {
         let Self { patches, summaries, runs, order, details, own_m2, has_slight, .. } = self;
         *has_slight = false;
@@ -257,7 +257,7 @@ impl FrictionPatches {
             }
         }
         own_m2.resize(end as usize, 0.0);
-        let found = DetailsScene { scene, forces, history, patches, runs, order };
+        let found = DetailScene { scene, forces, history, patches, runs, order };
         found.find(details, (0, own_m2));
     }
 
@@ -315,10 +315,11 @@ impl FrictionPatches {
         sides.clear();
         sides.resize(details.len(), [None; 2]);
         let Some(deformation) = scene.input.deformation else { return nodal.begin([].into_iter()) };
-        let patch = |(k, _): (u32, f64)| -> Option<PatchOn> {
+        let patch = |(k, _): (u32, f64)| -> Option<SearchedPatch> {
             let (run, patch) = (&order[runs[k as usize].places.clone()], &patches[k as usize]);
             let detail = patch.detail?;
-            Some((k, patch, run, &details[detail as usize], &own_m2[facets_of(details, detail)]))
+            let own_m2 = &own_m2[facets_of(details, detail)];
+            Some(SearchedPatch { number: k, patch, detail: &details[detail as usize], run, own_m2 })
         };
         let is_nodal = |block: &BlockId| is_asked[block.index()] && scene.input.bodies[block.index()].deforms;
         nodal.begin(scene.input.blocks.ids().filter(is_nodal));

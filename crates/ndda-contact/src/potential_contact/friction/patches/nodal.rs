@@ -83,9 +83,15 @@ pub(super) struct SideScene<'a> {
     pub forces: &'a [FacetForce],
 }
 
-/// A patch whose friction is searched for: its number, its facets, what is known of it, and the mean square distance of the points of each facet from the own
-/// centre of that.
-pub(super) type PatchOn<'a> = (u32, &'a ContactPatch, &'a [Place], &'a PatchDetail, &'a [f64]);
+/// A patch whose friction is searched for.
+pub(super) struct SearchedPatch<'a> {
+    pub number: u32,
+    pub patch: &'a ContactPatch,
+    pub detail: &'a PatchDetail,
+    /// Its facets, and the mean square distance of the points of each from the facet's own centre [m²].
+    pub run: &'a [Place],
+    pub own_m2: &'a [f64],
+}
 
 impl Nodal {
     /// Forgets the last step, and takes the blocks that deform and have friction, ascending.
@@ -98,7 +104,7 @@ impl Nodal {
     }
 
     /// Lets each block take its sides of patches.
-    pub(super) fn take_sides<'a, I: Iterator<Item = PatchOn<'a>>>(
+    pub(super) fn take_sides<'a, I: Iterator<Item = SearchedPatch<'a>>>(
         &mut self,
         found: &SideScene,
         patches_of: impl Fn(BlockId) -> I + Sync,
@@ -214,7 +220,7 @@ impl BlockSides {
         &mut self,
         block: BlockId,
         found: &SideScene,
-        (number, patch, run, detail, own_m2): PatchOn,
+        SearchedPatch { number, patch, detail, run, own_m2 }: SearchedPatch,
         columns: &mut Vec<Vec3>,
     ) {
         let SideScene { scene, forces, .. } = found;

@@ -99,7 +99,7 @@ pub(super) struct ContactPatch {
     pub slides: bool,
 }
 
-/// What is to be known of a patch whose friction is searched for.
+/// Details of a patch whose friction is searched for.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct PatchDetail {
     /// Number of the patch, and the end of its facets among those of all such patches.

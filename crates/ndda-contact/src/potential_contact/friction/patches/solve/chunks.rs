@@ -119,7 +119,7 @@ pub(super) struct Chunk<'a> {
     pushed: &'a mut [u32],
     /// Counts visits.
     now: u32,
-    /// What visits have found.
+    /// Results of the visits so far.
     pub found: Found,
 }
 
@@ -130,7 +130,7 @@ pub(super) struct Left {
     pub times: f64,
 }
 
-/// What visits have found.
+/// Results of visits.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Found {
     /// Patches whose friction was looked for.
@@ -256,7 +256,7 @@ impl<'a> Place<'_, 'a> {
         }
     }
 
-    /// What has been found.
+    /// Results of the visits here so far.
     pub(super) fn found(&mut self) -> &mut Found {
         &mut self.own.found
     }

@@ -50,7 +50,7 @@ pub(super) struct Coupling {
     answers_of_sides: Vec<[f32; 3]>,
     /// Room for the velocities, or slips, of blocks that deform.
     velocities: Vec<Vec3>,
-    /// Where the sides of each block begin.
+    /// First side of each block, while sides are counted; then the end of its sides.
     starts: Vec<u32>,
 }
 
@@ -142,7 +142,7 @@ impl Coupling {
     }
 }
 
-/// What answers read.
+/// Sides, answers and friction that the change of slips is computed from.
 #[derive(Clone, Copy)]
 struct AnswerScene<'a> {
     sides: &'a [Side],
