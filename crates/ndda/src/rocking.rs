@@ -67,8 +67,8 @@ impl fmt::Display for Rocking {
         };
         write!(
             f,
-            "block `{block}`{with} rocks from {rocks_at_m_s2:.3} m/s² on, {rigid_m_s2:.3} m/s² if contact did not give way: penetration takes {:.1} %, \
-             limit {:.0} %; the base reaches {peak_m_s2:.3} m/s²",
+            "block `{block}`{with} begins to rock where its base accelerates by {rocks_at_m_s2:.3} m/s², on rigid edges by {rigid_m_s2:.3} m/s²: penetration lowers \
+             this by {:.1} %, limit {:.0} %, and the base reaches {peak_m_s2:.3} m/s²",
             100.0 * self.lost(),
             100.0 * MOST_LOST
         )?;
@@ -316,6 +316,11 @@ mod tests {
     fn it_counts_only_where_the_base_shakes_as_much() {
         assert!(!shaken(1).unwrap().is_doubtful(), "a cube rocks at 10 m/s² only");
         let text = shaken(4).unwrap().to_string();
-        assert!(text.starts_with("block `cube_0`, with 3 blocks on it, rocks from 2."), "{text}");
+        assert!(
+            text.starts_with(
+                "block `cube_0`, with 3 blocks on it, begins to rock where its base accelerates by 2."
+            ),
+            "{text}"
+        );
     }
 }

@@ -121,7 +121,7 @@ fn at_the_start(scene: &Scene, simulation: &Simulation) -> Vec<Finding> {
         reason: lean.to_string(),
     });
     let rocking = rocking::worst(scene, simulation).filter(Rocking::is_doubtful).map(|rocking| Finding {
-        what: "part of the acceleration that makes a block rock, taken by penetration",
+        what: "acceleration at which a block rocks, lowered by penetration",
         value: rocking.lost(),
         limit: rocking::MOST_LOST,
         reason: rocking.to_string(),
