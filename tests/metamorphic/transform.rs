@@ -89,10 +89,11 @@ pub fn compare(case: &Case, twin: &Scene, map: &Map, reorder: impl Fn(&Motion) -
     }
 }
 
-/// What the tolerance of contact at the end of the step leaves open in a step: forces to a part of the weight, and so speeds to that of g Δt [m/s].
+/// What the tolerance of contact at the end of the step leaves open in all steps together: in each of them forces to a part of the weight, and so
+/// speeds to that of g Δt [m/s].
 fn end_search_m_s(scene: &Scene) -> f64 {
     let ContactAt::End { tolerance, .. } = scene.time.contact_at else { return 0.0 };
-    tolerance * Vec3::from(scene.gravity_m_s2).norm() * scene.time.step_s
+    tolerance * Vec3::from(scene.gravity_m_s2).norm() * scene.time.end_s
 }
 
 fn has_velocity_friction(scene: &Scene) -> bool {

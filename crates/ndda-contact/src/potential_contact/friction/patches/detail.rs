@@ -102,7 +102,8 @@ impl FacetsScene<'_> {
     fn principal_axes(&self, patch: &ContactPatch, second_moment_m2: &Mat3) -> ([Vec3; 3], [f64; 2]) {
         let [s, t] = tangents(&patch.normal);
         let (mean, spread, angle) = principal(second_moment_m2, &[s, t]);
-        let angle = angle.unwrap_or_else(|| self.fourfold_angle(patch, &[s, t]));
+        let angle = angle.or_else(|| self.fourfold_angle(patch, &[s, t]));
+        let angle = angle.unwrap_or_else(|| self.edge_angle(&[s, t]));
         let (sin, cos) = angle.sin_cos();
         let along = s * cos + t * sin;
         // The lesser one is positive but for rounding.
@@ -111,12 +112,21 @@ impl FacetsScene<'_> {
     }
 
     /// Angle of the axes where both second moments are the same, as those of a square: it follows the facets, so that it turns with the blocks.
-    fn fourfold_angle(&self, patch: &ContactPatch, [s, t]: &[Vec3; 2]) -> f64 {
+    fn fourfold_angle(&self, patch: &ContactPatch, [s, t]: &[Vec3; 2]) -> Option<f64> {
         let corners = self.run.iter().map(|&(_, _, facet)| {
             let arm = self.forces[facet as usize].center - patch.center;
             (self.scene.sums(facet).pressure.max(0.0), [s.dot(&arm), t.dot(&arm)])
         });
         fourfold_angle(corners)
+    }
+
+    /// Angle of an edge of the first facet that presses.
+    fn edge_angle(&self, axes: &[Vec3; 2]) -> f64 {
+        let pressing = self.run.iter().find(|(_, _, facet)| self.scene.sums(*facet).pressure > 0.0);
+        pressing.map_or(0.0, |&(_, _, facet)| {
+            let (input, triangle) = (self.scene.input, self.scene.touch(facet).triangle);
+            moments::edge_angle(&input.blocks.triangle_corners(triangle, input.position), axes)
+        })
     }
 }
 

@@ -18,7 +18,7 @@ use ndda_mesh::{Mat3, Vec3};
 const CELLS: [(f64, [u32; 2]); 3] = [(1.5, [4, 4]), (4.5, [8, 2]), (f64::INFINITY, [16, 2])];
 /// Cells along a patch that are summed side by side, so that processors take several at once.
 const LANES: usize = 4;
-/// Ω r / |V| below which one cell will do.
+/// Ω r / |V| below which four points will do: they have the same friction to third order.
 const TRANSLATES: f64 = 0.1;
 /// Slip that counts as none, as parts of the slip without friction: first coarse, then fine.
 const SMOOTHING: [f64; 2] = [1e-3, 1e-8];
@@ -27,6 +27,8 @@ const NEAR: f64 = 0.1;
 /// Newton steps for each, and halvings of one.
 const MOST_STEPS: usize = 30;
 const MOST_HALVINGS: usize = 30;
+/// Relative change of the minimum that rounding hides.
+const ROUNDING: f64 = 1e-12;
 /// Part of that torque that is within the limit whatever the cells.
 const HELD: f64 = 0.99;
 
@@ -44,8 +46,8 @@ pub(super) struct LimitSurface {
     cell_radius2: f64,
     /// Most T/r.
     most_twist_n: f64,
-    /// Whether all cells count whatever the slip.
-    is_whole: bool,
+    /// Whether four points with the same second moments stand for all cells, as the patch is taken to hardly turn.
+    is_coarse: bool,
 }
 
 impl LimitSurface {
@@ -59,41 +61,40 @@ impl LimitSurface {
         let side = |k: usize| 2.0 * half[k] / f64::from(cells[k]);
         let cell_radius2 = (side(0).powi(2) + side(1).powi(2)) / 24.0;
         let mut surface =
-            Self { most_n, radius_m, half, cells, cell_radius2, most_twist_n: 0.0, is_whole: false };
+            Self { most_n, radius_m, half, cells, cell_radius2, most_twist_n: 0.0, is_coarse: false };
         surface.most_twist_n = surface.dissipation(&Vec3::z(), 0.0).1.z;
         surface
     }
 
-    /// Takes the slip without friction of a visit: from the first on in which the patch turns, all cells count. A patch that had one cell in one visit and all
-    /// in the next would change its friction again and again.
-    pub(super) fn watch(&mut self, free_slip: &Vec3, is_first: bool) {
-        self.is_whole = (self.is_whole && !is_first) || !hardly_turns(free_slip);
+    /// Begins a search: four points will do if the patch would hardly turn at this slip without friction.
+    pub(super) fn begin(&mut self, free_slip: &Vec3) {
+        self.is_coarse = hardly_turns(free_slip);
     }
 
-    /// The limit surface for slips like this one: where a patch hardly turns, one cell has the same friction to second order in Ω r/|V|.
-    fn for_slip(mut self, slip: &Vec3) -> Self {
-        if !self.is_whole && hardly_turns(slip) {
-            let speed2 = slip.x * slip.x + slip.y * slip.y;
-            let share = slip.x * slip.x / speed2;
-            let [a, b] = self.half.map(|half| half * half / 3.0);
-            (self.cells, self.cell_radius2) = ([1, 1], a * share + b * (1.0 - share));
-        }
-        self
+    /// Lets all cells count from now on where four points do not do, as the patch turns after all; whether that is so.
+    pub(super) fn refine(&mut self, free_slip: &Vec3) -> bool {
+        let turns = self.is_coarse && !hardly_turns(free_slip);
+        self.is_coarse &= !turns;
+        turns
     }
 
     /// D of a displacement (u₁, u₂, θ r) [J].
     pub(super) fn work_j(&self, slip: &Vec3) -> f64 {
-        self.for_slip(slip).dissipation(slip, 0.0).0
+        let surface = Self { is_coarse: hardly_turns(slip), ..*self };
+        surface.dissipation(slip, 0.0).0
     }
 
     /// D, its gradient and its second derivatives, |v| being √(|v|² + ε²).
     fn dissipation(&self, slip: &Vec3, smoothing2: f64) -> (f64, Vec3, Mat3) {
         let ([n, m], [a, b]) = (self.cells, self.half);
         let place = |i: u32, n: u32, half: f64| (f64::from(2 * i + 1) / f64::from(n) - 1.0) * half;
-        let cell = CellSums { slip: *slip, radius2: self.cell_radius2, smoothing2, ..CellSums::default() };
-        let mut sums = [cell; LANES];
-        if n == 1 {
-            sums[0].add(0.0, 0.0);
+        let radius2 = if self.is_coarse { 0.0 } else { self.cell_radius2 };
+        let mut sums = [CellSums { slip: *slip, radius2, smoothing2, ..CellSums::default() }; LANES];
+        let count = if self.is_coarse {
+            let (x, y) = (a / 3f64.sqrt(), b / 3f64.sqrt());
+            let points = [(-x, -y), (x, -y), (-x, y), (x, y)];
+            sums.iter_mut().zip(points).for_each(|(sums, (x, y))| sums.add(x, y));
+            LANES as u32
         } else {
             for j in 0..m {
                 let y = place(j, m, b);
@@ -102,8 +103,9 @@ impl LimitSurface {
                     sums.iter_mut().zip(x).for_each(|(sums, x)| sums.add(x, y));
                 }
             }
-        }
-        let share = self.most_n / f64::from(n * m);
+            n * m
+        };
+        let share = self.most_n / f64::from(count);
         let sum = |part: fn(&CellSums) -> f64| share * sums.iter().map(part).sum::<f64>();
         let [xx, yy, zz] = [sum(|s| s.curvature[0]), sum(|s| s.curvature[1]), sum(|s| s.curvature[2])];
         let [xy, xz, yz] = [sum(|s| s.curvature[3]), sum(|s| s.curvature[4]), sum(|s| s.curvature[5])];
@@ -132,12 +134,11 @@ impl LimitSurface {
         if self.holds(&stopping) {
             return (stopping, None);
         }
-        let surface = self.for_slip(free_slip);
         let (mut slip, mut curvature) = (*start, *stiffness);
         let is_far = is_first && start.norm() <= NEAR * free_slip.norm();
         for &smoothing in &SMOOTHING[usize::from(!is_far)..] {
             let smoothing = smoothing * free_slip.norm();
-            (slip, curvature) = surface.least(stiffness, (free_slip, slip), smoothing, tolerance_n);
+            (slip, curvature) = self.least(stiffness, (free_slip, slip), smoothing, tolerance_n);
         }
         let force = stiffness * (slip - free_slip);
         (self.shortened(force), Some(curvature))
@@ -169,14 +170,20 @@ impl LimitSurface {
             }
             let mut part = 1.0;
             let mut next = value(&(slip - step));
-            for _ in 0..MOST_HALVINGS {
-                if next.0 <= least - 1e-4 * part * gain {
-                    break;
+            let is_less = if gain <= ROUNDING * least.abs() {
+                // Rounding hides what is gained; the residual tells.
+                next.1.norm_squared() < slope.norm_squared()
+            } else {
+                for _ in 0..MOST_HALVINGS {
+                    if next.0 <= least - 1e-4 * part * gain {
+                        break;
+                    }
+                    part *= 0.5;
+                    next = value(&(slip - part * step));
                 }
-                part *= 0.5;
-                next = value(&(slip - part * step));
-            }
-            if next.0 >= least {
+                next.0 < least
+            };
+            if !is_less {
                 break;
             }
             slip -= part * step;

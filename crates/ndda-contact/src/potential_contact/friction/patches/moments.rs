@@ -50,14 +50,21 @@ pub(crate) fn principal(second_moment_m2: &Mat3, [s, t]: &[Vec3; 2]) -> (f64, f6
 }
 
 /// Angle of the axes of weights w at (x, y) whose second moments are the same, as those of a square: Σ w (x + iy)⁴ is real and negative along the axes
-/// of weights that lie in the corners.
-pub(crate) fn fourfold_angle(weights: impl Iterator<Item = (f64, [f64; 2])>) -> f64 {
-    let (mut real, mut imaginary) = (0.0, 0.0);
+/// of weights that lie in the corners. None where the weights have no such axes, as those of a disc or of a triangle.
+pub(crate) fn fourfold_angle(weights: impl Iterator<Item = (f64, [f64; 2])>) -> Option<f64> {
+    let (mut real, mut imaginary, mut all) = (0.0, 0.0, 0.0);
     for (weight, [x, y]) in weights {
+        all += weight * (x * x + y * y).powi(2);
         real += weight * (x * x * (x * x - 6.0 * y * y) + y.powi(4));
         imaginary += weight * 4.0 * x * y * (x * x - y * y);
     }
-    0.25 * (-imaginary).atan2(-real)
+    (real.hypot(imaginary) > TIE * all).then(|| 0.25 * (-imaginary).atan2(-real))
+}
+
+/// Angle of an edge of a triangle: where no direction differs from others, it turns with the blocks.
+pub(crate) fn edge_angle(corners: &[Vec3; 3], [s, t]: &[Vec3; 2]) -> f64 {
+    let edge = corners[1] - corners[0];
+    t.dot(&edge).atan2(s.dot(&edge))
 }
 
 /// Two unit vectors across a normal.

@@ -9,7 +9,7 @@ use ndda_mesh::geometry::triangle_area_vector;
 use ndda_mesh::{BlockId, BlockSet, Mat3, TriangleId, Vec3};
 
 use crate::affine::surface::BlockFaces;
-use crate::friction::patches::moments::{fourfold_angle, of_triangle, principal, tangents};
+use crate::friction::patches::moments::{edge_angle, fourfold_angle, of_triangle, principal, tangents};
 use crate::model::{ContactHistory, FaceMemory};
 
 /// Numbers for each face and its nine parts.
@@ -142,12 +142,13 @@ impl RestFace {
         let second_moment_m2: Mat3 = vectors().map(moment).sum();
         let normal = whole / area_m2;
         let [s, t] = tangents(&normal);
-        let angle = principal(&second_moment_m2, &[s, t]).2.unwrap_or_else(|| {
+        let angle = principal(&second_moment_m2, &[s, t]).2.or_else(|| {
             fourfold_angle(vectors().map(|(vector, corners)| {
                 let arm = middle(&corners) - center;
                 (share(&vector), [s.dot(&arm), t.dot(&arm)])
             }))
         });
+        let angle = angle.unwrap_or_else(|| edge_angle(&corners(blocks, triangles[0]), &[s, t]));
         let along = s * angle.cos() + t * angle.sin();
         Self { area_m2, center, axes: [along, normal.cross(&along)] }
     }

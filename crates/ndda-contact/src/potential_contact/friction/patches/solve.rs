@@ -263,13 +263,24 @@ impl CoupledPatch {
         self.sides[k].is_none() && bodies[self.blocks()[k].index()].mass_kg.is_infinite()
     }
 
-    /// Notes the slip of the side that does not move, at the beginning of a stage.
-    fn note_held(&mut self, bodies: &[Body]) {
+    /// Begins a stage: notes the slip of the side that does not move, and whether the patch would turn. The latter does not depend on the order of visits.
+    fn begin(&mut self, motion: &Motion) {
         for k in [0, 1] {
-            if self.is_held(k, bodies) {
-                self.held = self.slip_of(&bodies[self.blocks()[k].index()], &self.arms[k]);
+            if self.is_held(k, motion.bodies) {
+                self.held = self.slip_of(&motion.bodies[self.blocks()[k].index()], &self.arms[k]);
             }
         }
+        let free_slip = self.slip_in(motion) - GAMMA * (self.flexibility * self.force);
+        self.surface.begin(&free_slip);
+    }
+
+    /// Whether the patch turns, against what was taken at the beginning of the stage: its friction is then to be found anew.
+    fn refine(&mut self) -> bool {
+        let turns = self.surface.refine(&self.free_slip);
+        if turns {
+            (self.is_found, self.seen) = (false, 0);
+        }
+        turns
     }
 
     /// Friction of this patch while that of the others stays; by how much it changed, nothing where that is less than the tolerance.
@@ -283,7 +294,6 @@ impl CoupledPatch {
         place.found().visits += 1;
         let start = self.slip_for(&free_slip).unwrap_or(slip);
         (self.free_slip, self.is_found) = (free_slip, true);
-        self.surface.watch(&free_slip, is_first);
         let stiffness = self.stiffness / GAMMA;
         let tolerance_n = LOCAL_TOLERANCE * self.tolerance_n;
         let (force, curvature) =

@@ -1,5 +1,8 @@
 //! One of both minima: visits of patch after patch, and Newton's method for all where these take long.
 
+use rayon::prelude::*;
+
+use crate::friction::patches::GRAIN_PATCHES;
 use crate::friction::patches::solve::chunks::{Left, each_patch};
 use crate::friction::patches::solve::newton::Newton;
 use crate::friction::patches::solve::{CoupledPatch, GAMMA, Motion, Search};
@@ -61,18 +64,19 @@ pub(super) fn solve_stage(patches: &mut [CoupledPatch], motion: &mut Motion, new
     let most_visits = most_visits.max(MOST_VISITS);
     let most_sweeps = SHORT_SWEEPS * most_visits / count.max(1);
     motion.visits.begin(motion.bodies.len());
-    let bodies = &*motion.bodies;
-    for (row, patch) in (0..).zip(&mut *patches) {
-        (patch.row, patch.seen) = (row, 0);
-        patch.note_held(bodies);
-    }
+    let all = &*motion;
+    patches.par_iter_mut().enumerate().with_min_len(GRAIN_PATCHES).for_each(|(row, patch)| {
+        (patch.row, patch.seen) = (row as u32, 0);
+        patch.begin(all);
+    });
     let (mut sweeps, mut left) = (0, Left::default());
     let (mut steps, mut is_tried, mut between) = (0, false, VISITS_BETWEEN * count);
     let mut next = motion.alone;
     while sweeps < most_sweeps && motion.visits.count < most_visits {
         left = sweep(patches, motion, time_s, sweeps);
         let factors = (motion.visits.count / motion.eased).min(MOST_EASED);
-        if left.slip_m_s == 0.0 || !is_tried && left.times <= 10f64.powi(factors as i32) {
+        let is_found = left.slip_m_s == 0.0 || !is_tried && left.times <= 10f64.powi(factors as i32);
+        if is_found && !refine(patches) {
             break;
         }
         sweeps += 1;
@@ -92,6 +96,11 @@ pub(super) fn solve_stage(patches: &mut [CoupledPatch], motion: &mut Motion, new
         }
     }
     Search { visits: motion.visits.count, left_m_s: left.slip_m_s }
+}
+
+/// Whether patches turn of which that was not known: their friction is to be found anew.
+fn refine(patches: &mut [CoupledPatch]) -> bool {
+    patches.iter_mut().fold(false, |turns, patch| turns | patch.refine())
 }
 
 /// A sweep over all patches that are to be visited, to and fro by turns.
