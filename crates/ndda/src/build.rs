@@ -290,6 +290,7 @@ pub(crate) fn contact_model(
             memory,
             restitution,
             shear_restitution,
+            friction_tolerance,
             ..
         }) => {
             let potential = choices.potential.take().unwrap_or_else(|| contact_potential(potential));
@@ -316,7 +317,7 @@ pub(crate) fn contact_model(
                 scene::Memory::Body => Memory::Body,
                 scene::Memory::Element => Memory::Element,
             };
-            table.tolerance = choices.friction_tolerance.unwrap_or(table.tolerance);
+            table.tolerance = choices.friction_tolerance.or(*friction_tolerance).unwrap_or(table.tolerance);
             // Without friction, no shear spring and no memory is made.
             if table.have_laws() {
                 model = model.with_law_table(table);

@@ -26,7 +26,7 @@ pub struct Choices {
     pub friction: Option<Box<dyn FrictionLaw>>,
     /// Friction of all facets at once instead of all friction that the scene names.
     pub batch_law: Option<Box<dyn BatchLaw>>,
-    /// Tolerance of friction on velocities, as a part of μN; 1e-7 unless it is given.
+    /// Tolerance of friction on velocities instead of `contact.friction_tolerance`, as a part of μN.
     pub friction_tolerance: Option<f64>,
     /// The search for pairs that may touch.
     pub broad_phase: Option<Box<dyn BroadPhase>>,

@@ -25,6 +25,7 @@ impl Check<'_> {
                     friction,
                     material_pairs,
                     rock_joints,
+                    friction_tolerance,
                     ..
                 },
             ) => {
@@ -33,6 +34,9 @@ impl Check<'_> {
                 self.potential(potential);
                 if let Some(friction) = friction {
                     self.friction("contact.friction", friction);
+                }
+                if let Some(tolerance) = friction_tolerance {
+                    self.friction_tolerance(*tolerance);
                 }
                 self.material_pairs(material_pairs);
                 self.rock_joints(rock_joints);
@@ -46,6 +50,17 @@ impl Check<'_> {
                 }
             }
             _ => {}
+        }
+    }
+
+    fn friction_tolerance(&mut self, tolerance: f64) {
+        if !(1e-10..=1e-2).contains(&tolerance) {
+            let message = format!("{tolerance}: must be from 1e-10 to 1e-2");
+            self.error(
+                "contact.friction_tolerance",
+                message,
+                "it is a part of the largest friction; 1e-4 is quick",
+            );
         }
     }
 

@@ -12,6 +12,7 @@
 //! friction is its slope: force F = −∂D/∂V, torque T = −∂D/∂Ω.
 
 use ndda_mesh::{Mat3, Vec3};
+use pulp::{Arch, Simd, WithSimd};
 
 /// Cells along and across a patch whose spin matters, by its aspect ratio: force and torque are then right to 3 % of μN, the torque
 /// of a pure twist to 0.5 %.
@@ -85,32 +86,28 @@ impl LimitSurface {
     }
 
     /// D, its gradient and its second derivatives, |v| being √(|v|² + ε²).
+    #[inline(always)]
     fn dissipation(&self, slip: &Vec3, smoothing2: f64) -> (f64, Vec3, Mat3) {
         let ([n, m], [a, b]) = (self.cells, self.half);
-        let place = |i: u32, n: u32, half: f64| (f64::from(2 * i + 1) / f64::from(n) - 1.0) * half;
-        let radius2 = if self.is_coarse { 0.0 } else { self.cell_radius2 };
-        let mut sums = [CellSums { slip: *slip, radius2, smoothing2, ..CellSums::default() }; LANES];
-        let count = if self.is_coarse {
+        if self.is_coarse {
+            let points = Cell { slip: *slip, radius2: 0.0, smoothing2 };
             let (x, y) = (a / 3f64.sqrt(), b / 3f64.sqrt());
-            let points = [(-x, -y), (x, -y), (-x, y), (x, y)];
-            sums.iter_mut().zip(points).for_each(|(sums, (x, y))| sums.add(x, y));
-            LANES as u32
-        } else {
-            for j in 0..m {
-                let y = place(j, m, b);
-                for i in (0..n).step_by(LANES) {
-                    let x: [f64; LANES] = std::array::from_fn(|lane| place(i + lane as u32, n, a));
-                    sums.iter_mut().zip(x).for_each(|(sums, x)| sums.add(x, y));
-                }
+            let mut sums = CellSums::<2>::default();
+            sums.add(&points, &[-x, x], -y);
+            sums.add(&points, &[-x, x], y);
+            return sums.total(0.25 * self.most_n);
+        }
+        let place = |i: u32, n: u32, half: f64| (f64::from(2 * i + 1) / f64::from(n) - 1.0) * half;
+        let cell = Cell { slip: *slip, radius2: self.cell_radius2, smoothing2 };
+        let mut sums = CellSums::<LANES>::default();
+        for j in 0..m {
+            let y = place(j, m, b);
+            for i in (0..n).step_by(LANES) {
+                let x: [f64; LANES] = std::array::from_fn(|lane| place(i + lane as u32, n, a));
+                sums.add(&cell, &x, y);
             }
-            n * m
-        };
-        let share = self.most_n / f64::from(count);
-        let sum = |part: fn(&CellSums) -> f64| share * sums.iter().map(part).sum::<f64>();
-        let [xx, yy, zz] = [sum(|s| s.curvature[0]), sum(|s| s.curvature[1]), sum(|s| s.curvature[2])];
-        let [xy, xz, yz] = [sum(|s| s.curvature[3]), sum(|s| s.curvature[4]), sum(|s| s.curvature[5])];
-        let slope = Vec3::new(sum(|s| s.slope[0]), sum(|s| s.slope[1]), sum(|s| s.slope[2]));
-        (sum(|s| s.value), slope, Mat3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz))
+        }
+        sums.total(self.most_n / f64::from(n * m))
     }
 
     /// Whether a force is within the limit for sure: T/Tmax ≤ 1 − (F/μN)², which is the limit of a patch without width across it, and less than
@@ -126,14 +123,26 @@ impl LimitSurface {
     pub(super) fn friction(
         &self,
         stiffness: &Mat3,
+        slips: (&Vec3, &Vec3),
+        tolerance_n: f64,
+        is_first: bool,
+    ) -> (Vec3, Option<Mat3>) {
+        let stopping = -(stiffness * slips.0);
+        if self.holds(&stopping) {
+            return (stopping, None);
+        }
+        Arch::new().dispatch(SlidingFriction { surface: self, stiffness, slips, tolerance_n, is_first })
+    }
+
+    /// The same where the patch does not stick for sure.
+    #[inline(always)]
+    fn sliding_friction(
+        &self,
+        stiffness: &Mat3,
         (free_slip, start): (&Vec3, &Vec3),
         tolerance_n: f64,
         is_first: bool,
     ) -> (Vec3, Option<Mat3>) {
-        let stopping = -(stiffness * free_slip);
-        if self.holds(&stopping) {
-            return (stopping, None);
-        }
         let (mut slip, mut curvature) = (*start, *stiffness);
         let is_far = is_first && start.norm() <= NEAR * free_slip.norm();
         for &smoothing in &SMOOTHING[usize::from(!is_far)..] {
@@ -145,6 +154,7 @@ impl LimitSurface {
     }
 
     /// Newton's method with a line search: the slip, and A + D″ there.
+    #[inline(always)]
     fn least(
         &self,
         stiffness: &Mat3,
@@ -153,14 +163,8 @@ impl LimitSurface {
         tolerance_n: f64,
     ) -> (Vec3, Mat3) {
         let smoothing2 = smoothing * smoothing;
-        let value = |slip: &Vec3| {
-            let gap = slip - free_slip;
-            let force = stiffness * gap;
-            let (dissipation, slope, curvature) = self.dissipation(slip, smoothing2);
-            (0.5 * gap.dot(&force) + dissipation, force + slope, stiffness + curvature)
-        };
         let mut slip = start;
-        let (mut least, mut slope, mut curvature) = value(&slip);
+        let (mut least, mut slope, mut curvature) = self.raised(stiffness, (free_slip, &slip), smoothing2);
         for _ in 0..MOST_STEPS {
             let Some(step) = solved(&curvature, &slope) else { break };
             let gain = slope.dot(&step);
@@ -169,7 +173,7 @@ impl LimitSurface {
                 break;
             }
             let mut part = 1.0;
-            let mut next = value(&(slip - step));
+            let mut next = self.raised(stiffness, (free_slip, &(slip - step)), smoothing2);
             let is_less = if gain <= ROUNDING * least.abs() {
                 // Rounding hides what is gained; the residual tells.
                 next.1.norm_squared() < slope.norm_squared()
@@ -179,7 +183,7 @@ impl LimitSurface {
                         break;
                     }
                     part *= 0.5;
-                    next = value(&(slip - part * step));
+                    next = self.raised(stiffness, (free_slip, &(slip - part * step)), smoothing2);
                 }
                 next.0 < least
             };
@@ -192,6 +196,20 @@ impl LimitSurface {
         (slip, curvature)
     }
 
+    /// ½ (σ − s)·A (σ − s) + D(σ), its gradient and its second derivatives.
+    #[inline(always)]
+    fn raised(
+        &self,
+        stiffness: &Mat3,
+        (free_slip, slip): (&Vec3, &Vec3),
+        smoothing2: f64,
+    ) -> (f64, Vec3, Mat3) {
+        let gap = slip - free_slip;
+        let force = stiffness * gap;
+        let (dissipation, slope, curvature) = self.dissipation(slip, smoothing2);
+        (0.5 * gap.dot(&force) + dissipation, force + slope, stiffness + curvature)
+    }
+
     /// A force no longer than μN: Newton's method ends a rounding beyond.
     fn shortened(&self, force: Vec3) -> Vec3 {
         let along = (force.x * force.x + force.y * force.y).sqrt();
@@ -200,33 +218,75 @@ impl LimitSurface {
     }
 }
 
-/// Sums over cells of the dissipation for one newton of friction on each, and of its derivatives: xx, yy, zz, xy, xz, yz.
-#[derive(Clone, Copy, Default)]
-struct CellSums {
+/// A question for the friction of a patch that does not stick for sure: the same sums in the same order, on the processor's widest lanes.
+struct SlidingFriction<'a> {
+    surface: &'a LimitSurface,
+    stiffness: &'a Mat3,
+    slips: (&'a Vec3, &'a Vec3),
+    tolerance_n: f64,
+    is_first: bool,
+}
+
+impl WithSimd for SlidingFriction<'_> {
+    type Output = (Vec3, Option<Mat3>);
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Self::Output {
+        let Self { surface, stiffness, slips, tolerance_n, is_first } = self;
+        surface.sliding_friction(stiffness, slips, tolerance_n, is_first)
+    }
+}
+
+/// What all cells of a patch share: its slip, ρ²/r² and ε².
+#[derive(Clone, Copy)]
+struct Cell {
     slip: Vec3,
     radius2: f64,
     smoothing2: f64,
-    value: f64,
-    slope: [f64; 3],
-    curvature: [f64; 6],
 }
 
-impl CellSums {
-    /// Adds the cell at x, y.
+/// Sums over cells of the dissipation for one newton of friction on each, and of its derivatives: xx, yy, zz, xy, xz, yz; several cells side by side.
+#[derive(Clone, Copy)]
+struct CellSums<const N: usize> {
+    value: [f64; N],
+    slope: [[f64; N]; 3],
+    curvature: [[f64; N]; 6],
+}
+
+impl<const N: usize> Default for CellSums<N> {
+    fn default() -> Self {
+        Self { value: [0.0; N], slope: [[0.0; N]; 3], curvature: [[0.0; N]; 6] }
+    }
+}
+
+impl<const N: usize> CellSums<N> {
+    /// Adds the cells at x in the row at y.
     #[inline(always)]
-    fn add(&mut self, x: f64, y: f64) {
-        let (u, v) = (self.slip.x - self.slip.z * y, self.slip.y + self.slip.z * x);
-        let twist = self.radius2 * self.slip.z;
-        let speed = (u * u + v * v + twist * self.slip.z + self.smoothing2).sqrt();
-        let per_speed = if speed > 0.0 { 1.0 / speed } else { 0.0 };
-        let (e, f) = (u * per_speed, v * per_speed);
-        let t = x * f - y * e + twist * per_speed;
-        let turn = x * x + y * y + self.radius2;
-        self.value += speed;
-        let slope = [e, f, t];
-        let curvature = [1.0 - e * e, 1.0 - f * f, turn - t * t, -e * f, -(y + e * t), x - f * t];
-        self.slope.iter_mut().zip(slope).for_each(|(sum, part)| *sum += part);
-        self.curvature.iter_mut().zip(curvature).for_each(|(sum, part)| *sum += part * per_speed);
+    fn add(&mut self, &Cell { slip, radius2, smoothing2 }: &Cell, x: &[f64; N], y: f64) {
+        let (u, twist) = (slip.x - slip.z * y, radius2 * slip.z);
+        let fixed = twist * slip.z;
+        for (lane, x) in x.iter().enumerate() {
+            let v = slip.y + slip.z * x;
+            let speed = (u * u + v * v + fixed + smoothing2).sqrt();
+            let per_speed = if speed > 0.0 { 1.0 / speed } else { 0.0 };
+            let (e, f) = (u * per_speed, v * per_speed);
+            let t = x * f - y * e + twist * per_speed;
+            let turn = x * x + y * y + radius2;
+            self.value[lane] += speed;
+            let slope = [e, f, t];
+            let curvature = [1.0 - e * e, 1.0 - f * f, turn - t * t, -e * f, -(y + e * t), x - f * t];
+            self.slope.iter_mut().zip(slope).for_each(|(sum, part)| sum[lane] += part);
+            self.curvature.iter_mut().zip(curvature).for_each(|(sum, part)| sum[lane] += part * per_speed);
+        }
+    }
+
+    /// D, its gradient and its second derivatives, each cell bearing this much friction [N].
+    #[inline(always)]
+    fn total(&self, share: f64) -> (f64, Vec3, Mat3) {
+        let sum = |lanes: &[f64; N]| share * lanes.iter().sum::<f64>();
+        let [xx, yy, zz, xy, xz, yz] = self.curvature.each_ref().map(sum);
+        let slope = Vec3::from(self.slope.each_ref().map(sum));
+        (sum(&self.value), slope, Mat3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz))
     }
 }
 
@@ -236,7 +296,7 @@ fn hardly_turns(slip: &Vec3) -> bool {
 }
 
 /// A⁻¹ b for a positive definite A.
-#[inline]
+#[inline(always)]
 pub(super) fn solved(a: &Mat3, b: &Vec3) -> Option<Vec3> {
     let d0 = a[(0, 0)];
     let (l1, l2) = (a[(1, 0)] / d0, a[(2, 0)] / d0);

@@ -42,6 +42,8 @@ type PairRun = (BlockId, BlockId, u32, u32);
 pub(super) struct Opposite {
     runs: Vec<Run>,
     by_pair: Vec<PairRun>,
+    /// Where the runs of pairs with each lower block begin; while they are put there, where the next one goes.
+    starts: Vec<u32>,
 }
 
 impl Opposite {
@@ -93,18 +95,33 @@ impl Opposite {
         }
     }
 
-    fn find_opposite(&mut self, scene: &PatchScene, by_face: &[Place]) {
-        let Self { runs, by_pair, .. } = self;
+    /// Lists runs by the lower block of their pair, those of a block in the order of runs.
+    fn list_by_lower_block(&mut self, blocks: usize) {
+        let Self { runs, by_pair, starts } = self;
+        starts.clear();
+        starts.resize(blocks + 1, 0);
+        runs.iter().for_each(|run| starts[run.owner.min(run.target).index() + 1] += 1);
+        (0..blocks).for_each(|block| starts[block + 1] += starts[block]);
         by_pair.clear();
-        by_pair.extend((0..).zip(&*runs).map(|(number, run)| {
-            let (owner, target) = (run.owner, run.target);
-            (owner.min(target), owner.max(target), number, NONE)
-        }));
-        by_pair.par_sort_unstable();
+        by_pair.resize(runs.len(), (BlockId(0), BlockId(0), 0, NONE));
+        for (number, run) in (0..).zip(&*runs) {
+            let (lower, higher) = (run.owner.min(run.target), run.owner.max(run.target));
+            let next = &mut starts[lower.index()];
+            by_pair[*next as usize] = (lower, higher, number, NONE);
+            *next += 1;
+        }
+    }
+
+    fn find_opposite(&mut self, scene: &PatchScene, by_face: &[Place]) {
+        self.list_by_lower_block(scene.input.blocks.len());
+        let Self { runs, by_pair, .. } = self;
         let all = &*runs;
         let of_pair = |pair: &mut [PairRun]| {
             let from_other = pair.partition_point(|&(lower, _, run, _)| all[run as usize].owner == lower);
             let (own, others) = pair.split_at_mut(from_other);
+            if others.is_empty() {
+                return;
+            }
             for (_, _, number, opposite) in own {
                 let run = &all[*number as usize];
                 let law = scene.law(&by_face[run.places.clone()]);
@@ -123,11 +140,14 @@ impl Opposite {
                 }
             }
         };
-        let is_same = |a: &PairRun, b: &PairRun| (a.0, a.1) == (b.0, b.1);
+        let of_block = |of_lower: &mut [PairRun]| {
+            of_lower.sort_unstable_by_key(|(_, higher, run, _)| (*higher, *run));
+            of_lower.chunk_by_mut(|a, b| a.1 == b.1).for_each(of_pair);
+        };
         if by_pair.len() > GRAIN_PATCHES {
-            by_pair.par_chunk_by_mut(is_same).for_each(of_pair);
+            by_pair.par_chunk_by_mut(|a, b| a.0 == b.0).for_each(of_block);
         } else {
-            by_pair.chunk_by_mut(is_same).for_each(of_pair);
+            by_pair.chunk_by_mut(|a, b| a.0 == b.0).for_each(of_block);
         }
         for &(_, _, run, opposite) in &*by_pair {
             runs[run as usize].opposite = opposite;
