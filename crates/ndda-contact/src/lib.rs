@@ -41,6 +41,8 @@ mod model;
 mod pair_stiffness;
 mod plan;
 mod resultants;
+#[cfg(feature = "potential")]
+mod room;
 pub mod testing;
 
 pub use audit::ContactAudit;

@@ -11,6 +11,7 @@ use crate::model::{ContactHistory, ContactInput, FacetContact, SpringSlip};
 use crate::plan::Part;
 use crate::potential::contact_potential::PotentialField;
 use crate::restitution::ContactDamping;
+use crate::room::make_room;
 
 use super::evaluation::for_each_facet;
 use super::{PotentialContact, plan};
@@ -28,6 +29,7 @@ impl ContactAudit for PotentialContact {
             let dilation_work_j = outcomes.get(t).map_or(0.0, |outcome| outcome.dilation_work_j);
             *work_j = push.dot(&relative_motion(touch, found, (blocks, moved))) - dilation_work_j;
         };
+        make_room(&mut self.work_of_facet, touching.len());
         self.work_of_facet.resize(touching.len(), 0.0);
         for_each_facet(&mut self.work_of_facet, work_of);
         for (touch, &work_j) in touching.iter().zip(&self.work_of_facet) {

@@ -20,6 +20,7 @@ use crate::pair_stiffness::PairStiffness;
 use crate::restitution::DampingScene;
 
 use crate::potential::contact_potential::{OverlapLaw, PotentialField};
+use crate::room::make_room;
 
 use super::PotentialContact;
 
@@ -91,6 +92,7 @@ impl PotentialContact {
         let touching = self.integrals.touching();
         self.penalty_of_facet.clear();
         self.curvature_of_facet.clear();
+        make_room(&mut self.penalty_of_facet, touching.len());
         if self.potential.law() == OverlapLaw::Linear {
             self.penalty_of_facet.resize(touching.len(), self.penalty_pa);
             return Ok(());
@@ -192,7 +194,8 @@ impl PotentialContact {
         let force = self.forces.binary_search_by_key(&touch.facet, |force| force.facet);
         let held = force.ok().map(|place| &self.forces[place]);
         let held = held.filter(|force| force.shear_slope > 0.0 && force.sticks);
-        let mut corners = input.blocks.triangle_corners(touch.triangle, input.position);
+        let at_nodes = input.blocks.triangle_corners(touch.triangle, input.position);
+        let mut corners = at_nodes;
         if !self.openings.is_empty() {
             let normal = triangle_area_vector(&corners).normalize();
             let opening_m = self.openings.of(touch.triangle, touch.target);
@@ -214,19 +217,28 @@ impl PotentialContact {
             if let Some(force) = held {
                 let normal = force.push.normalize();
                 let across = Mat3::identity() - normal * normal.transpose();
-                // The spring of a facet, shared among its hits by their pressure.
-                let [a, b, c] = overlap.pressure;
-                let [d, e, g, h] = overlap.on_target.pressure;
-                let total = a + b + c;
-                // A hit that only grazes has no weights.
-                if total > 0.0 {
-                    let weights = [a, b, c, -d, -e, -g, -h].map(|w| w / total);
+                // The spring of a facet, shared among its hits by their pressure. A hit that only grazes has no weights.
+                if let Some((total, center)) = overlap.center(&input.blocks.tet_corners(tet, input.position))
+                {
+                    let [a, b, c] = weights_in_triangle(&at_nodes, &center);
+                    let [d, e, g, h] = overlap.on_target.pressure.map(|w| w / total);
+                    let weights = [a, b, c, -d, -e, -g, -h];
                     pair.add_spring(&weights, &(force.shear_slope * total * across));
                 }
             }
             stiffness.push(pair);
         }
     }
+}
+
+/// Weights of the corners of a triangle at a point of its plane.
+fn weights_in_triangle(corners: &[Vec3; 3], x: &Vec3) -> [f64; 3] {
+    let whole = triangle_area_vector(corners);
+    let part = |a: usize, b: usize| {
+        triangle_area_vector(&[*x, corners[a], corners[b]]).dot(&whole) / whole.norm_squared()
+    };
+    let (b, c) = (part(2, 0), part(0, 1));
+    [1.0 - b - c, b, c]
 }
 
 /// Output of [`place_forces`]: forces of facets, what laws that act on facets find, reactions on host tetrahedra, and the numbers of the laws.
@@ -247,10 +259,12 @@ pub(super) fn place_forces(
 ) {
     let touching = integrals.touching();
     let state_len = scene.history.law_state_len as usize;
+    make_room(forces, touching.len());
     forces.resize(touching.len(), FacetForce::default());
     state.resize(touching.len() * state_len, 0.0);
     let has_laws = state_len > 0 || scene.joints.is_some_and(|joints| !joints.act_on_faces_only());
     outcomes.clear();
+    make_room(outcomes, if has_laws { touching.len() } else { 0 });
     outcomes.resize(if has_laws { touching.len() } else { 0 }, FacetOutcome::default());
     let place = |force: &mut FacetForce, t: usize, found: (Option<&mut FacetOutcome>, &mut [f64])| {
         let (overlaps, sums) = (integrals.overlaps_of(&touching[t]), integrals.sums_of(&touching[t]));

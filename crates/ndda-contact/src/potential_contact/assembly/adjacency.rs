@@ -4,6 +4,8 @@ use std::ops::Range;
 
 use ndda_mesh::BlockId;
 
+use crate::room::make_room;
+
 /// Index of the contacts on each block, in compressed rows: facets in contact, or faces, of the block itself and of others on it.
 #[derive(Default)]
 pub struct BlockContactIndex {
@@ -35,6 +37,7 @@ impl BlockContactIndex {
         }
         // Each entry moves on from where its block begins to where the next one does.
         self.on_target.clear();
+        make_room(&mut self.on_target, each.len());
         self.on_target.resize(each.len(), 0);
         for (k, (_, target)) in (0..).zip(each) {
             let place = &mut self.target_start[target.index() + 1];

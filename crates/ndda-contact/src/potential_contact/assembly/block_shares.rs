@@ -16,7 +16,7 @@ pub(super) const SHARE_BLOCKS: usize = 16;
 /// ∫ φ dV over the parts of tetrahedra of other blocks that are in some blocks.
 #[derive(Default)]
 pub(super) struct BlockShares {
-    /// Pair of blocks in [`Candidates::neighbours`], whether the block is the second of it, and the share of one tetrahedron [m³]; by block, then by tetrahedron.
+    /// Pair of blocks in [`Candidates::neighbours`], whether the block is the second of it, and its share [m³]; by block, then by the other block.
     pub(super) of_pair: Vec<(u32, bool, f64)>,
 }
 
@@ -59,7 +59,12 @@ impl BlockShares {
                 // ∫ φ over the whole tetrahedron is V/4: that is what a contained centroid leaves out.
                 let missing = if has_centroid(integral, volume_m3) { 0.25 * volume_m3 } else { 0.0 };
                 let is_second = parts.candidates.neighbours[pair as usize].1 == block;
-                self.of_pair.push((pair, is_second, integral + missing));
+                let share_m3 = integral + missing;
+                // The tetrahedra of another block follow each other.
+                match self.of_pair.last_mut().filter(|last| (last.0, last.1) == (pair, is_second)) {
+                    Some((_, _, sum_m3)) => *sum_m3 += share_m3,
+                    None => self.of_pair.push((pair, is_second, share_m3)),
+                }
             }
         }
     }

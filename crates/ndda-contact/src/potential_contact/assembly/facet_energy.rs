@@ -9,7 +9,7 @@ use ndda_mesh::geometry::triangle_area_vector;
 use ndda_mesh::{TetId, Vec3};
 
 use crate::assembly::overlap_parts::OverlapParts;
-use crate::friction::openings::{Openings, moved_out};
+use crate::friction::openings::Openings;
 use crate::integration::overlap_pair::{ActiveFacet, OverlapPair};
 use crate::integration::quadrature::gauss_legendre;
 use crate::integration::tet_frame::TetFrame;
@@ -29,15 +29,13 @@ pub(super) fn energy_m3(
 ) -> f64 {
     let corners = input.blocks.triangle_corners(touch.triangle, input.position);
     let normal = triangle_area_vector(&corners).normalize();
-    let corners = moved_out(&corners, &normal, openings.of(touch.triangle, touch.target));
+    let opening_m = openings.of(touch.triangle, touch.target);
     let share = |hit: &OverlapPair| {
-        let [a, b, c] = hit.pressure;
-        let pressure_m2 = a + b + c;
-        if pressure_m2 <= 0.0 {
-            return 0.0;
-        }
-        let center = (corners[0] * a + corners[1] * b + corners[2] * c) / pressure_m2;
-        pressure_m2 * column_m(touch, hit, parts, (&center, &normal))
+        // The force acts where the facet is, not where it is clipped.
+        let found = hit.center(&input.blocks.tet_corners(hit.tet, input.position));
+        found.map_or(0.0, |(pressure_m2, center)| {
+            pressure_m2 * column_m(touch, hit, parts, (&(center + opening_m * normal), &normal))
+        })
     };
     parts.integrals.overlaps_of(touch).iter().map(share).sum()
 }

@@ -111,7 +111,7 @@ fn add_block(scene: &ScatterScene, block: BlockId, output: ContactOutput) {
         Some(whole) => nodes.add_affine_target(scene, whole, own, on_block),
     }
     if let Some(position) = scene.position {
-        nodes.add_couples(scene, block, position);
+        nodes.add_tilt(scene, block, position);
     }
 }
 
@@ -224,9 +224,9 @@ impl BlockNodes<'_> {
         }
     }
 
-    /// The couples of facets of this block, and the opposite of those on it.
+    /// The moments of damping on facets of this block, and the opposite of those on it.
     #[inline(never)]
-    fn add_couples(&mut self, scene: &ScatterScene, block: BlockId, position: &[Vec3]) {
+    fn add_tilt(&mut self, scene: &ScatterScene, block: BlockId, position: &[Vec3]) {
         let own = scene.adjacency.of(block).map(|t| (t, true));
         let on_block = scene.adjacency.on(block).iter().map(|&t| (t, false));
         let ScatterScene { blocks, integrals, hulls, .. } = *scene;
@@ -239,18 +239,6 @@ impl BlockNodes<'_> {
                     force[node - self.first] += f;
                 });
             }
-            let couple_n_m = scene.forces[t as usize].couple_n_m;
-            if couple_n_m == Vec3::zeros() {
-                continue;
-            }
-            let couple_n_m = if is_owner { couple_n_m } else { -couple_n_m };
-            couples.each_force(&integrals.touching()[t as usize], is_owner, &couple_n_m, |node, force| {
-                let i = node - self.first;
-                self.output.force[i] += force;
-                if let Some(sum) = self.output.friction_force.get_mut(i) {
-                    *sum += force;
-                }
-            });
         }
     }
 

@@ -29,8 +29,8 @@ fn add_block(scene: &ScatterScene, faces: &FrictionPatches, block: BlockId, outp
     let first = scene.blocks.nodes_of(block).start;
     let whole = scene.hulls.affine_target(block);
     let ContactOutput { force, friction_force, .. } = output;
-    for t in faces.searched_facets(block) {
-        each_force(scene, (t as usize, block, whole), |node, added| {
+    for (t, normal) in faces.searched_facets(block) {
+        each_force(scene, (t as usize, normal), (block, whole), |node, added| {
             force[node - first] += added;
             if let Some(sum) = friction_force.get_mut(node - first) {
                 *sum += added;
@@ -39,10 +39,11 @@ fn add_block(scene: &ScatterScene, faces: &FrictionPatches, block: BlockId, outp
     }
 }
 
-/// The friction of a facet on each node of a block: its own, or, with the opposite sign, the target.
+/// The friction of a facet, of whose patch that is the normal, on each node of a block: its own, or, with the opposite sign, the target.
 fn each_force(
     scene: &ScatterScene,
-    (t, block, whole): (usize, BlockId, Option<&AffineConvexTarget>),
+    (t, normal): (usize, &Vec3),
+    (block, whole): (BlockId, Option<&AffineConvexTarget>),
     mut add: impl FnMut(usize, Vec3),
 ) {
     let (touch, force) = (&scene.integrals.touching()[t], &scene.forces[t]);
@@ -76,8 +77,8 @@ fn each_force(
             nodes.iter().zip(weights).for_each(|(node, share)| add(node.index(), -*share * force.shear));
         }
     }
-    if let Some(position) = scene.position.filter(|_| force.couple_n_m != Vec3::zeros()) {
-        let couple_n_m = if is_owner { force.couple_n_m } else { -force.couple_n_m };
+    if let Some(position) = scene.position.filter(|_| force.couple_n_m != 0.0) {
+        let couple_n_m = if is_owner { force.couple_n_m * normal } else { -force.couple_n_m * normal };
         let ScatterScene { blocks, integrals, hulls, .. } = *scene;
         CoupleScene { blocks, position, integrals, hulls }.each_force(touch, is_owner, &couple_n_m, add);
     }

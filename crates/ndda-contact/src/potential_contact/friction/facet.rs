@@ -24,8 +24,8 @@ pub struct FacetForce {
     pub shear: Vec3,
     /// Whether friction is spread in proportion to |∂φ/∂n| dA, not to the pressure.
     pub shear_by_area: bool,
-    /// Torque of friction about the centre of pressure, which `shear` does not have [N m].
-    pub couple_n_m: Vec3,
+    /// Torque of friction about the normal of its patch at the centre of pressure, which `shear` does not have [N m].
+    pub couple_n_m: f64,
     /// ½ k_s S / ∫ φ dA: what a shift of the facet adds to `shear` [Pa/m].
     pub shear_slope: f64,
     /// Whether its friction is below what it may be.

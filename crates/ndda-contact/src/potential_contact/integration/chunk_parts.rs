@@ -3,9 +3,9 @@
 use std::ops::Range;
 
 use ndda_mesh::geometry::triangle_area_vector;
-use ndda_mesh::{BlockId, TriangleId, Vec3};
+use ndda_mesh::{BlockId, BlockSet, TriangleId, Vec3};
 
-use crate::integration::overlap_pair::{ActiveFacet, FacetMoments, OverlapPair};
+use crate::integration::overlap_pair::{ActiveFacet, ChunkFacet, FacetMoments, OverlapPair};
 use crate::integration::pair_report::OverlapReport;
 use crate::integration::scene::Scene;
 
@@ -21,10 +21,22 @@ pub(crate) struct Chunk {
     /// Its number.
     pub(super) number: u32,
     /// Facets that have some, ascending, and what theirs come to.
-    pub(super) touching: Vec<ActiveFacet>,
+    pub(super) touching: Vec<ChunkFacet>,
     pub(super) sums: Vec<FacetMoments>,
     /// Report on the overlapping pairs.
     pub report: OverlapReport,
+}
+
+impl Chunk {
+    /// Its facets that touch, with the places of their hits.
+    pub(super) fn facets_in_touch(&self, blocks: &BlockSet) -> impl Iterator<Item = ActiveFacet> {
+        let (chunk, mut end) = (self.number, 0);
+        (0..).zip(&self.touching).map(move |(place, &ChunkFacet { facet, triangle, target, hits })| {
+            let (first, owner) = (end, blocks.triangle_block[triangle.index()]);
+            end += hits;
+            ActiveFacet { facet, triangle, owner, target, chunk, overlaps: [first, end], place }
+        })
+    }
 }
 
 /// A contactor's triangle.
@@ -50,15 +62,6 @@ impl Triangle {
 #[derive(Default)]
 pub(super) struct Results {
     pub(super) overlaps: Vec<OverlapPair>,
-    pub(super) touching: Vec<ActiveFacet>,
+    pub(super) touching: Vec<ChunkFacet>,
     pub(super) sums: Vec<FacetMoments>,
-}
-
-/// Puts entries in the place of others, with room for an eighth more where there is too little.
-pub(super) fn copy_into<T: Copy>(list: &mut Vec<T>, entries: &[T]) {
-    list.clear();
-    if list.capacity() < entries.len() {
-        list.reserve_exact(entries.len() + entries.len() / 8);
-    }
-    list.extend_from_slice(entries);
 }

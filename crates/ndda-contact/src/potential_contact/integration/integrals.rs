@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
-use ndda_mesh::{BlockId, TetId};
+use ndda_mesh::{BlockId, TetId, TriangleId};
 use ndda_ranks::{Communicator, RanksError};
 use pulp::Arch;
 use rayon::prelude::*;
@@ -13,11 +13,11 @@ use crate::broad_phase::candidates::{Candidates, Facet};
 use crate::broad_phase::finder::FEW_NODES;
 use crate::friction::openings::moved_out;
 use crate::integration::affine_target::{EvaluateHalfSpaces, PushRegions};
-use crate::integration::chunk_parts::{Chunk, Results, Triangle, copy_into};
+use crate::integration::chunk_parts::{Chunk, Results, Triangle};
 use crate::integration::clip::Outline;
 use crate::integration::function_moments::{Placed, add_function};
 use crate::integration::joint_faces::two_faces_separate;
-use crate::integration::overlap_pair::{ActiveFacet, FacetMoments, OverlapPair};
+use crate::integration::overlap_pair::{ActiveFacet, ChunkFacet, FacetMoments, OverlapPair};
 use crate::integration::pair_moments::{PairMoments, PsiRange};
 use crate::integration::pair_report::OverlapReport;
 use crate::integration::queue::RegionQueue;
@@ -26,6 +26,7 @@ use crate::integration::scene::{Scene, are_on_one_side, lies_in_a_plane_of};
 use crate::integration::shared_chunks::SharedChunks;
 use crate::integration::tet_frame::{by_face, some_face_separates};
 use crate::potential::contact_potential::PotentialField;
+use crate::room::{copy_into, make_room};
 
 /// Pairs of a chunk: one task for a thread. Where there are many, chunks are larger, since each has memory of its own, most of which is not used.
 const CHUNK_PAIRS: usize = 512;
@@ -48,10 +49,19 @@ struct PendingPair {
     moments: PairMoments,
 }
 
+/// A facet with such pairs, and their places.
+struct PendingFacet {
+    facet: u32,
+    triangle: TriangleId,
+    target: BlockId,
+    seen: Range<u32>,
+}
+
 /// Scratch memory of a thread for one chunk.
 #[derive(Default)]
 struct Scratch {
     results: Results,
+    facets: Vec<PendingFacet>,
     seen: Vec<PendingPair>,
     region: Region,
     pieces: Pieces,
@@ -83,79 +93,45 @@ impl Chunk {
         self.overlaps.reserve(self.pairs / 4);
         self.touching.clear();
         self.touching.reserve(self.facets.len());
+        self.sums.clear();
         self.sums.reserve(self.facets.len());
-        scratch.make_room(self.pairs);
+        scratch.make_room(self.pairs, self.facets.len());
         let (mut block, mut at) = (self.first, self.facets.start);
         while at < self.facets.end {
             let end = scene.candidates.numbers_of(block).end.min(self.facets.end);
             if scene.hulls.may_touch(block) {
-                self.look_at(arch, scene, scratch, (block, at..end));
+                scratch.look_at(arch, scene, (block, at..end));
             }
             (block, at) = (BlockId(block.0 + 1), end);
         }
-        let Scratch { batches, seen, .. } = scratch;
+        let Scratch { batches, seen, facets, .. } = scratch;
         batches.finish(arch, |part| seen[part.pair as usize].moments.add_region(part));
-        self.take(scene, seen);
-    }
-
-    /// Finds the regions of facets of one block.
-    fn look_at(
-        &mut self,
-        arch: Arch,
-        scene: &Scene,
-        scratch: &mut Scratch,
-        (owner, numbers): (BlockId, Range<u32>),
-    ) {
-        let (mut last, mut corners, opens) = (None, Triangle::default(), !scene.openings.is_empty());
-        for facet in scene.candidates.facets_within(owner, numbers) {
-            if scene.hulls.are_apart(facet.neighbours) {
-                continue;
-            }
-            // Facets of one triangle follow each other.
-            if last != Some(facet.triangle) {
-                (last, corners) = (Some(facet.triangle), Triangle::new(scene, facet.triangle));
-            }
-            let first = scratch.seen.len() as u32;
-            if opens {
-                scratch.add_opened_facet(arch, scene, &facet, &corners);
-            } else {
-                scratch.add_facet(arch, scene, &facet, &corners);
-            }
-            let overlaps = [first, scratch.seen.len() as u32];
-            if overlaps[0] < overlaps[1] {
-                let (chunk, place) = (self.number, self.touching.len() as u32);
-                let Facet { number: facet, triangle, target, .. } = facet;
-                self.touching.push(ActiveFacet { facet, triangle, owner, target, chunk, overlaps, place });
-            }
-        }
+        self.take(scene, facets, seen);
     }
 
     /// Keeps what has an area, and the facets that have such hits; what is not a number stays to be reported.
-    fn take(&mut self, scene: &Scene, seen: &mut [PendingPair]) {
-        let Self { overlaps, sums, report, .. } = self;
-        sums.clear();
+    fn take(&mut self, scene: &Scene, facets: &[PendingFacet], seen: &mut [PendingPair]) {
+        let Self { overlaps, touching, sums, report, .. } = self;
         *report = OverlapReport::default();
-        self.touching.retain_mut(|touch| {
-            let (first, mut sum) = (overlaps.len() as u32, FacetMoments::default());
-            for seen in &mut seen[touch.overlaps[0] as usize..touch.overlaps[1] as usize] {
+        for &PendingFacet { facet, triangle, target, seen: Range { start, end } } in facets {
+            let (first, mut sum) = (overlaps.len(), FacetMoments::default());
+            for seen in &mut seen[start as usize..end as usize] {
                 seen.drop_rounding();
                 let PendingPair { tet, slot, lambda, moments, .. } = seen;
                 if moments.area != 0.0 {
                     let on_target = moments.on_target(lambda);
-                    let overlap =
-                        OverlapPair { tet: *tet, slot: *slot, pressure: moments.pressure, on_target };
-                    report.add(touch.triangle, &overlap, moments.depth, scene);
+                    let overlap = OverlapPair { tet: *tet, slot: *slot, on_target };
+                    report.add(triangle, &overlap, moments, scene);
                     sum.add(moments);
                     overlaps.push(overlap);
                 }
             }
-            (touch.overlaps, touch.place) = ([first, overlaps.len() as u32], sums.len() as u32);
-            let touches = touch.overlaps[0] < touch.overlaps[1];
-            if touches {
+            let hits = (overlaps.len() - first) as u32;
+            if hits > 0 {
+                touching.push(ChunkFacet { facet, triangle, target, hits });
                 sums.push(sum);
             }
-            touches
-        });
+        }
     }
 }
 
@@ -169,6 +145,31 @@ impl PendingPair {
 }
 
 impl Scratch {
+    /// Finds the regions of facets of one block.
+    fn look_at(&mut self, arch: Arch, scene: &Scene, (owner, numbers): (BlockId, Range<u32>)) {
+        let (mut last, mut corners, opens) = (None, Triangle::default(), !scene.openings.is_empty());
+        for facet in scene.candidates.facets_within(owner, numbers) {
+            if scene.hulls.are_apart(facet.neighbours) {
+                continue;
+            }
+            // Facets of one triangle follow each other.
+            if last != Some(facet.triangle) {
+                (last, corners) = (Some(facet.triangle), Triangle::new(scene, facet.triangle));
+            }
+            let first = self.seen.len() as u32;
+            if opens {
+                self.add_opened_facet(arch, scene, &facet, &corners);
+            } else {
+                self.add_facet(arch, scene, &facet, &corners);
+            }
+            let seen = first..self.seen.len() as u32;
+            if !seen.is_empty() {
+                let Facet { number: facet, triangle, target, .. } = facet;
+                self.facets.push(PendingFacet { facet, triangle, target, seen });
+            }
+        }
+    }
+
     fn add_facet(&mut self, arch: Arch, scene: &Scene, facet: &Facet, triangle: &Triangle) {
         let Triangle { corners, normal, area } = triangle;
         if *area == 0.0 {
@@ -243,7 +244,9 @@ impl Scratch {
         arch.dispatch(PushRegions { sides, region, batches, outline, arch, at, area_m2: *area });
     }
 
-    fn make_room(&mut self, pairs: usize) {
+    fn make_room(&mut self, pairs: usize, facets: usize) {
+        self.facets.clear();
+        self.facets.reserve(facets);
         let pairs = pairs.max(CHUNK_PAIRS);
         self.seen.clear();
         self.seen.reserve(pairs);
@@ -335,7 +338,8 @@ impl Integrals {
         }
         self.touching.clear();
         let used = &self.chunks[..used];
-        used.iter().for_each(|chunk| self.touching.extend_from_slice(&chunk.touching));
+        make_room(&mut self.touching, used.iter().map(|chunk| chunk.touching.len()).sum());
+        used.iter().for_each(|chunk| self.touching.extend(chunk.facets_in_touch(scene.blocks)));
         Ok(())
     }
 

@@ -11,10 +11,18 @@ pub struct OverlapPair {
     pub tet: TetId,
     /// Place of its frame in [`Frames`](crate::integration::frames::Frames).
     pub slot: u32,
-    /// ∫ φ ψ_a dA [m²].
-    pub pressure: [f64; 3],
     /// Reaction on the target's nodes.
     pub on_target: OnTarget,
+}
+
+impl OverlapPair {
+    /// ∫ φ dA [m²] and its centre [m], from the corners of the tetrahedron; none where nothing presses.
+    pub(crate) fn center(&self, corners: &[Vec3; 4]) -> Option<(f64, Vec3)> {
+        let weights = &self.on_target.pressure;
+        let total: f64 = weights.iter().sum();
+        let sum: Vec3 = corners.iter().zip(weights).map(|(x, w)| *w * x).sum();
+        (total > 0.0).then(|| (total, sum / total))
+    }
 }
 
 /// Sums over the overlapping pairs of a facet.
@@ -59,6 +67,17 @@ impl FacetMoments {
         let total = a + b + c;
         if total <= 0.0 { corners[0] } else { (corners[0] * a + corners[1] * b + corners[2] * c) / total }
     }
+}
+
+/// A facet that touches, as its chunk keeps it: its hits follow those of the facet before.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ChunkFacet {
+    /// Its number among [`Candidates::facets`](crate::broad_phase::Candidates::facets).
+    pub(super) facet: u32,
+    pub(super) triangle: TriangleId,
+    pub(super) target: BlockId,
+    /// How many hits it has.
+    pub(super) hits: u32,
 }
 
 /// A facet that touches.

@@ -3,6 +3,7 @@
 use ndda_mesh::{TetId, TriangleId};
 
 use crate::integration::overlap_pair::OverlapPair;
+use crate::integration::pair_moments::PairMoments;
 use crate::integration::scene::Scene;
 use crate::potential::contact_potential::PotentialField;
 
@@ -18,22 +19,28 @@ pub(crate) struct OverlapReport {
 }
 
 impl OverlapReport {
-    /// Takes in a hit of a triangle, of this largest φ.
+    /// Takes in a hit of a triangle, whose own integrals these are.
     #[inline]
-    pub(crate) fn add(&mut self, triangle: TriangleId, overlap: &OverlapPair, depth: f64, scene: &Scene) {
-        let on_contactor: f64 = overlap.pressure.iter().sum();
+    pub(crate) fn add(
+        &mut self,
+        triangle: TriangleId,
+        overlap: &OverlapPair,
+        own: &PairMoments,
+        scene: &Scene,
+    ) {
+        let on_contactor: f64 = own.pressure.iter().sum();
         let on_target: f64 = overlap.on_target.pressure.iter().sum();
         if !on_contactor.is_finite() || !on_target.is_finite() {
             self.lost = self.lost.or(Some((triangle, overlap.tet)));
             return;
         }
         // Nodal forces of a grazing pair may cancel: their sizes are what rounding is relative to.
-        let scale: f64 = overlap.pressure.iter().map(|w| w.abs()).sum();
+        let scale: f64 = own.pressure.iter().map(|w| w.abs()).sum();
         if scale > 0.0 {
             let error = (on_contactor - on_target).abs() / scale;
             self.action_reaction_error = self.action_reaction_error.max(error);
         }
-        self.look_at((triangle, overlap.tet), penetration_ratio(scene, overlap.tet, depth));
+        self.look_at((triangle, overlap.tet), penetration_ratio(scene, overlap.tet, own.depth));
     }
 
     pub(crate) fn look_at(&mut self, pair: (TriangleId, TetId), ratio: f64) {

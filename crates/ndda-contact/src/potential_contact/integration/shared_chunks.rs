@@ -6,7 +6,7 @@ use ndda_mesh::{BlockId, TetId, TriangleId};
 use ndda_ranks::{Communicator, Gathered, Packed, Packer, RanksError, Topic, Unpacker, divide, share};
 
 use crate::integration::chunk_parts::Chunk;
-use crate::integration::overlap_pair::{ActiveFacet, FacetMoments, OverlapPair};
+use crate::integration::overlap_pair::{ChunkFacet, FacetMoments, OverlapPair};
 use crate::integration::pair_moments::OnTarget;
 use crate::integration::pair_report::OverlapReport;
 
@@ -21,8 +21,8 @@ pub(super) struct SharedChunks {
     all: Gathered,
 }
 
-/// A facet that touches, without where its hits are: facet, triangle, owner, target, and how many hits.
-type PackedFacet = [u32; 5];
+/// A facet that touches: facet, triangle, target, and how many hits.
+type PackedFacet = [u32; 4];
 
 impl SharedChunks {
     /// The chunks of this rank. Weights are the pairs of a chunk and, ten times, the hits that it had last, which all ranks know.
@@ -62,8 +62,7 @@ impl SharedChunks {
 fn pack(chunk: &Chunk, packer: &mut Packer) {
     packer.put(&[chunk.touching.len() as u32, chunk.overlaps.len() as u32]);
     packer.put_each(&chunk.touching, |touch| -> PackedFacet {
-        let hits = touch.overlaps[1] - touch.overlaps[0];
-        [touch.facet, touch.triangle.0, touch.owner.0, touch.target.0, hits]
+        [touch.facet, touch.triangle.0, touch.target.0, touch.hits]
     });
     packer.put_each(&chunk.overlaps, |overlap| *overlap);
     packer.put_each(&chunk.sums, |sums| *sums);
@@ -72,14 +71,13 @@ fn pack(chunk: &Chunk, packer: &mut Packer) {
 
 fn unpack(chunk: &mut Chunk, found: &mut Unpacker) {
     let [touching, overlaps] = found.take::<[u32; 2]>().map(|count| count as usize);
-    let (number, mut end) = (chunk.number, 0);
-    let facet = |(place, [facet, triangle, owner, target, hits]): (u32, PackedFacet)| {
-        let first = end;
-        end += hits;
-        let (triangle, owner, target) = (TriangleId(triangle), BlockId(owner), BlockId(target));
-        ActiveFacet { facet, triangle, owner, target, chunk: number, overlaps: [first, end], place }
+    let facet = |[facet, triangle, target, hits]: PackedFacet| ChunkFacet {
+        facet,
+        triangle: TriangleId(triangle),
+        target: BlockId(target),
+        hits,
     };
-    fill(&mut chunk.touching, touching, (0..).zip(found.take_each(touching)).map(facet));
+    fill(&mut chunk.touching, touching, found.take_each(touching).map(facet));
     fill(&mut chunk.overlaps, overlaps, found.take_each(overlaps));
     fill(&mut chunk.sums, touching, found.take_each(touching));
     chunk.report = found.take();
@@ -95,22 +93,21 @@ fn fill<T>(list: &mut Vec<T>, count: usize, entries: impl Iterator<Item = T>) {
 }
 
 impl Packed for OverlapPair {
-    const BYTES: usize = 2 * 4 + 11 * 8;
+    const BYTES: usize = 2 * 4 + 8 * 8;
 
     #[inline(always)]
     fn write(&self, to: &mut [u8]) {
-        let Self { tet, slot, pressure, on_target } = self;
+        let Self { tet, slot, on_target } = self;
         [tet.0, *slot].write(to);
-        pressure.write(&mut to[8..]);
-        on_target.pressure.write(&mut to[32..]);
-        on_target.slope.write(&mut to[64..]);
+        on_target.pressure.write(&mut to[8..]);
+        on_target.slope.write(&mut to[40..]);
     }
 
     #[inline(always)]
     fn read(from: &[u8]) -> Self {
         let [tet, slot] = <[u32; 2]>::read(from);
-        let on_target = OnTarget { pressure: Packed::read(&from[32..]), slope: Packed::read(&from[64..]) };
-        Self { tet: TetId(tet), slot, pressure: Packed::read(&from[8..]), on_target }
+        let on_target = OnTarget { pressure: Packed::read(&from[8..]), slope: Packed::read(&from[40..]) };
+        Self { tet: TetId(tet), slot, on_target }
     }
 }
 

@@ -56,7 +56,7 @@ impl PatchDetail {
         let twist = sign * torque_n_m / total / radius2_m2;
         let arm = self.spread.center_of(scene, force, t) - center;
         force.shear = sign * patch.force_n / total + twist * patch.normal.cross(&arm);
-        force.couple_n_m = self.spread.weight(scene, t) * twist * own_radius2_m2 * patch.normal;
+        force.couple_n_m = self.spread.weight(scene, t) * twist * own_radius2_m2;
         force.shear_by_area = by_area;
         force.sticks = !patch.slides;
     }
@@ -164,7 +164,7 @@ impl DetailScene<'_> {
             let (patch, facets) = (&self.patches[detail.patch as usize], &self.runs[detail.patch as usize]);
             let (own_m2, rest) = left.split_at_mut(facets.places.len());
             left = rest;
-            let run = &self.order[facets.places.clone()];
+            let run = facets.of(self.order);
             let found = FacetsScene { scene: self.scene, forces: self.forces, run };
             detail.find(patch, facets, &found, own_m2, &mut remembered);
         }

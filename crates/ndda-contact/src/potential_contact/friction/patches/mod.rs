@@ -6,6 +6,7 @@
 //! together (`solve.rs`), but for patches that hardly count (`slight.rs`); blocks that deform answer to it at their nodes, as the solver says (`nodal.rs`).
 
 mod detail;
+mod gaps;
 mod limit_surface;
 pub(crate) mod moments;
 mod nodal;
@@ -33,7 +34,9 @@ use crate::friction::patches::detail::{DetailScene, facets_of};
 use crate::friction::patches::nodal::{Nodal, NodalSide, SearchedPatch, SideScene};
 use crate::friction::patches::opposite::Opposite;
 use crate::friction::patches::parts::FaceParts;
-use crate::friction::patches::patch::{ContactPatch, Moved, PatchDetail, PatchFacets, PatchSummary};
+use crate::friction::patches::patch::{
+    ContactPatch, Moved, PatchDetail, PatchFacets, PatchLoads, PatchSummary,
+};
 use crate::friction::patches::solve::chunks::Division;
 use crate::friction::patches::solve::newton::Newton;
 use crate::friction::patches::solve::stage::{self, Visits};
@@ -41,7 +44,8 @@ use crate::friction::patches::solve::{CoupledPatch, Motion, Search};
 use crate::friction::patches::tolerance::Tolerance;
 use crate::integration::integrals::Integrals;
 use crate::integration::overlap_pair::{ActiveFacet, FacetMoments};
-use crate::model::{Body, ContactHistory, ContactInput, FaceMemory};
+use crate::model::{Body, ContactHistory, ContactInput, Deformation, FaceMemory};
+use crate::room::make_room;
 
 /// Faces below which a second thread costs more than it brings.
 const GRAIN_PATCHES: usize = 64;
@@ -113,8 +117,9 @@ pub(crate) struct FrictionPatches {
     is_asked: Vec<bool>,
     /// Nodes of those that deform.
     nodal: Nodal,
-    /// One per run.
+    /// One per run, and what loads it, where blocks need that which do not deform.
     patches: Vec<ContactPatch>,
+    loads: Vec<PatchLoads>,
     summaries: Vec<PatchSummary>,
     /// One for each patch whose friction is searched for, and for their facets the mean square distance of points from the facet's own centre of pressure [m²].
     details: Vec<PatchDetail>,
@@ -133,6 +138,11 @@ pub(crate) struct FrictionPatches {
     search_order: Vec<u32>,
     new_faces: Vec<FaceMemory>,
     gaps_j: Vec<f64>,
+}
+
+/// Whether a block answers by its nodes.
+fn is_nodal(body: &Body, deformation: Option<&dyn Deformation>) -> bool {
+    deformation.is_some() && body.deforms
 }
 
 /// Where a facet is among the facets of all patches, and the number of its patch.
@@ -154,6 +164,7 @@ impl FrictionPatches {
         let place =
             |(t, touch): (u32, &ActiveFacet)| (self.face_parts.face_of(touch.triangle), touch.target, t);
         let touching = integrals.touching();
+        make_room(&mut self.by_face, touching.len());
         self.by_face.extend((0..).zip(touching).map(place));
         let of_one_block =
             |a: &Place, b: &Place| touching[a.2 as usize].owner == touching[b.2 as usize].owner;
@@ -164,10 +175,11 @@ impl FrictionPatches {
     fn join_faces(&mut self, scene: &PatchScene, forces: &[FacetForce], history: &ContactHistory) {
         let Self { opposite, by_face, order, runs, places, face_parts, .. } = self;
         opposite.join(scene, (forces, history), (by_face, order), (face_parts, runs));
+        make_room(places, forces.len());
         places.resize(forces.len(), FacetPlace::default());
         for (patch, run) in (0..).zip(&*runs) {
-            for (place, &(_, _, t)) in run.places.clone().zip(&order[run.places.clone()]) {
-                places[t as usize] = FacetPlace { place: place as u32, patch };
+            for (place, &(_, _, t)) in run.places.clone().zip(run.of(order)) {
+                places[t as usize] = FacetPlace { place, patch };
             }
         }
     }
@@ -202,7 +214,7 @@ impl FrictionPatches {
         let spread = |((t, force), &FacetPlace { place, patch }): ((usize, &mut FacetForce), &FacetPlace)| {
             let (patch, run) = (&patches[patch as usize], &runs[patch as usize]);
             if let Some(detail) = patch.detail.filter(|_| scene.sums(t as u32).pressure > 0.0) {
-                let own_m2 = own_m2[facets_of(details, detail).start + place as usize - run.places.start];
+                let own_m2 = own_m2[facets_of(details, detail).start + (place - run.places.start) as usize];
                 details[detail as usize].spread_to(patch, force, (scene, t as u32, own_m2));
             }
         };
@@ -222,6 +234,7 @@ impl FrictionPatches {
             },
             || {
                 new_faces.clear();
+                make_room(new_faces, patches.len());
                 new_faces.extend(patches.iter().zip(runs.iter()).filter_map(memory_of));
             },
         );
@@ -232,12 +245,25 @@ impl FrictionPatches {
     /// Where each face presses, and how hard.
     fn find_patches(&mut self, scene: &PatchScene, forces: &[FacetForce]) {
         let (order, runs) = (&self.order, &self.runs);
+        make_room(&mut self.patches, runs.len());
+        make_room(&mut self.summaries, runs.len());
         self.patches.resize(runs.len(), ContactPatch::default());
         self.summaries.resize(runs.len(), PatchSummary::default());
         let found = self.patches.par_iter_mut().zip(&mut self.summaries).zip(runs);
         found.with_min_len(GRAIN_PATCHES).for_each(|((patch, summary), run)| {
-            patch.find((&order[run.places.clone()], run), scene, forces);
+            patch.find((run.of(order), run), scene, forces);
             *summary = patch.summary();
+        });
+        let ContactInput { bodies, deformation, .. } = *scene.input;
+        let advances = |body: &Body| body.mass_kg.is_finite() && !is_nodal(body, deformation);
+        self.loads.clear();
+        if bodies.iter().any(advances) {
+            make_room(&mut self.loads, runs.len());
+            self.loads.resize(runs.len(), PatchLoads::default());
+        }
+        let found = self.loads.par_iter_mut().zip(&self.patches).zip(runs);
+        found.with_min_len(GRAIN_PATCHES).for_each(|((loads, patch), run)| {
+            *loads = patch.loads(run.of(order), scene, forces);
         });
     }
 
@@ -277,15 +303,14 @@ impl FrictionPatches {
                 self.bodies[block.index()].push(&bond.center, &(sign * bond.force_n));
             }
         }
-        let Self { is_asked, adjacency, patches, details, bodies, .. } = self;
-        let is_nodal = |body: &Body| scene.input.deformation.is_some() && body.deforms;
+        let Self { is_asked, adjacency, patches, loads, details, bodies, .. } = self;
         let advance = |(block, body): (usize, &mut Body)| {
             body.velocity_m_s += body.prescribed_change_m_s;
-            if is_asked[block] && body.mass_kg.is_finite() && !is_nodal(body) {
+            if is_asked[block] && body.mass_kg.is_finite() && !is_nodal(body, scene.input.deformation) {
                 body.add_gyroscopic_torque();
                 for (k, sign) in adjacency.at(BlockId(block as u32)) {
                     let patch = &patches[k as usize];
-                    patch.apply_loads(body, sign);
+                    patch.apply_loads(&loads[k as usize], body, sign);
                     if let Some(detail) = patch.detail {
                         details[detail as usize].apply_previous_friction(patch, body, sign);
                     }
@@ -302,11 +327,13 @@ impl FrictionPatches {
         scene.input.deformation.is_some() && scene.input.bodies.iter().zip(&self.is_asked).any(asks)
     }
 
-    /// The facets of patches whose friction is searched for on a block, and of the block.
-    pub(crate) fn searched_facets(&self, block: BlockId) -> impl Iterator<Item = u32> {
+    /// The facets of patches whose friction is searched for on a block, and of the block, with the normal of the patch.
+    pub(crate) fn searched_facets(&self, block: BlockId) -> impl Iterator<Item = (u32, &Vec3)> {
         let searched = self.adjacency.at(block).filter(|(k, _)| self.patches[*k as usize].detail.is_some());
-        searched
-            .flat_map(|(k, _)| self.order[self.runs[k as usize].places.clone()].iter().map(|place| place.2))
+        searched.flat_map(|(k, _)| {
+            let (run, normal) = (&self.runs[k as usize], &self.patches[k as usize].normal);
+            run.of(&self.order).iter().map(move |place| (place.2, normal))
+        })
     }
 
     /// How blocks that deform answer to the loads, and to the friction of patches, whose sides on them are found.
@@ -316,7 +343,7 @@ impl FrictionPatches {
         sides.resize(details.len(), [None; 2]);
         let Some(deformation) = scene.input.deformation else { return nodal.begin([].into_iter()) };
         let patch = |(k, _): (u32, f64)| -> Option<SearchedPatch> {
-            let (run, patch) = (&order[runs[k as usize].places.clone()], &patches[k as usize]);
+            let (run, patch) = (runs[k as usize].of(order), &patches[k as usize]);
             let detail = patch.detail?;
             let own_m2 = &own_m2[facets_of(details, detail)];
             Some(SearchedPatch { number: k, patch, detail: &details[detail as usize], run, own_m2 })
@@ -324,9 +351,7 @@ impl FrictionPatches {
         let is_nodal = |block: &BlockId| is_asked[block.index()] && scene.input.bodies[block.index()].deforms;
         nodal.begin(scene.input.blocks.ids().filter(is_nodal));
         let found = SideScene { scene: *scene, push, forces };
-        nodal.take_sides(&found, |block| adjacency.at(block).filter_map(patch));
-        nodal.add_bonds(scene);
-        nodal.answer(scene, deformation);
+        nodal.ask(&found, deformation, |block| adjacency.at(block).filter_map(patch));
         nodal.each_side(|block, number, side| {
             let patch = &patches[number as usize];
             if let Some(detail) = patch.detail {
@@ -361,26 +386,5 @@ impl FrictionPatches {
             found.hand_over(&mut patches[found.patch as usize], (start, bodies), dt_s);
         }
         search
-    }
-
-    /// How far friction of the last [`add`](Self::add) was from Coulomb's law over displacements of the nodes [m]: blocks and energy [J], one call for
-    /// each patch.
-    pub(crate) fn each_coulomb_gap(
-        &mut self,
-        (blocks, integrals, forces): (&BlockSet, &Integrals, &[FacetForce]),
-        moved: &[Vec3],
-        add: &mut dyn FnMut(BlockId, BlockId, f64),
-    ) {
-        let scene = Moved { blocks, integrals, moved };
-        let Self { patches, details, runs, order, gaps_j, .. } = self;
-        gaps_j.resize(patches.len(), 0.0);
-        let gap = |((gap_j, patch), run): ((&mut f64, &ContactPatch), &PatchFacets)| {
-            let detail = patch.detail.map(|detail| &details[detail as usize]);
-            *gap_j = patch.coulomb_gap_j(detail, &order[run.places.clone()], &scene, forces);
-        };
-        gaps_j.par_iter_mut().zip(&*patches).zip(&*runs).with_min_len(GRAIN_PATCHES).for_each(gap);
-        for (patch, &gap_j) in patches.iter().zip(&*gaps_j) {
-            add(patch.owner, patch.target, gap_j);
-        }
     }
 }

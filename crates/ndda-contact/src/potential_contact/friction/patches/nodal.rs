@@ -15,6 +15,10 @@ use crate::friction::facet::FacetForce;
 use crate::friction::patches::patch::{ContactPatch, PatchDetail};
 use crate::friction::patches::{GRAIN_BODIES, PatchScene, Place};
 use crate::model::Deformation;
+use crate::room::copy_into;
+
+/// Blocks that are asked at once: where there are more, what only their answers need is kept for so many at a time.
+const BATCH: usize = 2048;
 
 /// Share of a node in the force of one facet of a patch.
 #[derive(Clone, Copy, Debug)]
@@ -72,6 +76,8 @@ pub(super) struct Nodal {
     /// they change by, three columns for each side of a patch [m/s per N in a whole step]. Until the solver has answered, rows are nodes, and forces
     /// are in place of velocities.
     columns: Vec<Vec<Vec3>>,
+    /// Memory for the blocks of a batch, where there is more than one: their sides and columns until these are kept.
+    room: (Vec<BlockSides>, Vec<Vec<Vec3>>),
 }
 
 /// Input from which the sides of patches are found.
@@ -103,44 +109,30 @@ impl Nodal {
         self.columns.resize_with(room, Vec::new);
     }
 
-    /// Lets each block take its sides of patches.
-    pub(super) fn take_sides<'a, I: Iterator<Item = SearchedPatch<'a>>>(
+    /// Lets each block take its sides of patches, adds the forces of bonds, and lets the solver answer: velocities and U in place of forces, or slips and Pᵀ U.
+    pub(super) fn ask<'a, I: Iterator<Item = SearchedPatch<'a>>>(
         &mut self,
         found: &SideScene,
+        deformation: &dyn Deformation,
         patches_of: impl Fn(BlockId) -> I + Sync,
     ) {
-        let Self { asked, blocks, columns } = self;
-        let blocks = asked.par_iter().zip(blocks).zip(columns);
-        blocks.with_min_len(GRAIN_BODIES).for_each(|((&block, sides), columns)| {
-            sides.begin();
-            columns.clear();
-            columns.extend_from_slice(&found.push[found.scene.input.blocks.nodes_of(block)]);
-            patches_of(block).for_each(|patch| sides.add(block, found, patch, columns));
-        });
-    }
-
-    /// Adds the forces of bonds to the nodes of blocks that have taken sides.
-    pub(super) fn add_bonds(&mut self, scene: &PatchScene) {
-        let blocks = scene.input.blocks;
-        for bond in scene.bonds {
-            for (k, block) in bond.blocks.iter().enumerate() {
-                if let Ok(slot) = self.asked.binary_search(block) {
-                    let (first, forces) = (blocks.nodes_of(*block).start, &mut self.columns[slot]);
-                    bond.shares(blocks, k, |node, weight| forces[node - first] += weight * bond.force_n);
-                }
-            }
+        let Self { asked, blocks, columns, room: (sides, answers) } = self;
+        if asked.len() <= BATCH {
+            let room = (&mut blocks[..asked.len()], &mut columns[..asked.len()]);
+            return ask_batch(asked, found, deformation, room, &patches_of);
         }
-    }
-
-    /// Lets the solver answer for all blocks: velocities and U in place of forces, or slips and Pᵀ U.
-    pub(super) fn answer(&mut self, scene: &PatchScene, deformation: &dyn Deformation) {
-        let Self { asked, blocks, columns } = self;
-        deformation.answer(asked, &mut columns[..asked.len()]);
-        let blocks = asked.par_iter().zip(blocks).zip(columns);
-        blocks.with_min_len(GRAIN_BODIES).for_each(|((&block, sides), columns)| {
-            let nodes = scene.input.blocks.nodes_of(block);
-            sides.keep_slips(&scene.input.velocity[nodes], columns);
-        });
+        sides.resize_with(BATCH, BlockSides::default);
+        answers.resize_with(BATCH, Vec::new);
+        let kept = blocks.chunks_mut(BATCH).zip(columns.chunks_mut(BATCH));
+        for (asked, (blocks, columns)) in asked.chunks(BATCH).zip(kept) {
+            let (sides, answers) = (&mut sides[..asked.len()], &mut answers[..asked.len()]);
+            ask_batch(asked, found, deformation, (sides, answers), &patches_of);
+            let each = blocks.par_iter_mut().zip(columns).zip(sides.par_iter().zip(answers));
+            each.with_min_len(GRAIN_BODIES).for_each(|((block, columns), (sides, answers))| {
+                block.keep(sides);
+                copy_into(columns, answers);
+            });
+        }
     }
 
     /// Each side: its block, the number of its patch, and where it is.
@@ -197,12 +189,56 @@ impl Nodal {
     }
 }
 
+/// Asks these blocks at once.
+fn ask_batch<'a, I: Iterator<Item = SearchedPatch<'a>>>(
+    asked: &[BlockId],
+    found: &SideScene,
+    deformation: &dyn Deformation,
+    (sides, columns): (&mut [BlockSides], &mut [Vec<Vec3>]),
+    patches_of: &(impl Fn(BlockId) -> I + Sync),
+) {
+    let scene = &found.scene;
+    let blocks = asked.par_iter().zip(&mut *sides).zip(&mut *columns);
+    blocks.with_min_len(GRAIN_BODIES).for_each(|((&block, sides), columns)| {
+        sides.begin();
+        columns.clear();
+        columns.extend_from_slice(&found.push[scene.input.blocks.nodes_of(block)]);
+        patches_of(block).for_each(|patch| sides.add(block, found, patch, columns));
+    });
+    add_bonds(scene, asked, columns);
+    deformation.answer(asked, columns);
+    let blocks = asked.par_iter().zip(sides).zip(columns);
+    blocks.with_min_len(GRAIN_BODIES).for_each(|((&block, sides), columns)| {
+        sides.keep_slips(&scene.input.velocity[scene.input.blocks.nodes_of(block)], columns);
+    });
+}
+
+/// Adds the forces of bonds to the nodes of these blocks, the first of their columns.
+fn add_bonds(scene: &PatchScene, asked: &[BlockId], columns: &mut [Vec<Vec3>]) {
+    let blocks = scene.input.blocks;
+    for bond in scene.bonds {
+        for (k, block) in bond.blocks.iter().enumerate() {
+            if let Ok(slot) = asked.binary_search(block) {
+                let (first, forces) = (blocks.nodes_of(*block).start, &mut columns[slot]);
+                bond.shares(blocks, k, |node, weight| forces[node - first] += weight * bond.force_n);
+            }
+        }
+    }
+}
 impl BlockSides {
     fn begin(&mut self) {
         self.weights.clear();
         self.sides.clear();
         self.start.clear();
         self.rows = 0;
+    }
+
+    /// Takes over what the search for friction needs of others: without weights where columns have slips.
+    fn keep(&mut self, found: &Self) {
+        self.rows = found.rows;
+        copy_into(&mut self.sides, &found.sides);
+        copy_into(&mut self.start, &found.start);
+        copy_into(&mut self.weights, if found.has_slips() { &[][..] } else { &found.weights });
     }
 
     /// Whether columns have slips in place of velocities.

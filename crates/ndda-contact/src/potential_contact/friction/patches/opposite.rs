@@ -15,6 +15,7 @@ use crate::friction::patches::parts::{FaceParts, number_of, was_divided};
 use crate::friction::patches::patch::PatchFacets;
 use crate::friction::patches::{GRAIN_PATCHES, PatchScene, Place};
 use crate::model::ContactHistory;
+use crate::room::make_room;
 
 /// Faces whose normals are opposite but for so much lie on each other: the sine of about 8°.
 const TILT: f64 = 0.14;
@@ -24,7 +25,7 @@ const NONE: u32 = u32::MAX;
 /// The facets of one face on one block, in a row.
 #[derive(Clone, Debug)]
 struct Run {
-    places: Range<usize>,
+    places: Range<u32>,
     owner: BlockId,
     target: BlockId,
     /// Direction of its normal force, zero where it has no friction, and ∫ φ dA.
@@ -32,6 +33,13 @@ struct Run {
     pressure: f64,
     /// The run that lies on it.
     opposite: u32,
+}
+
+impl Run {
+    /// Its facets in the list of all.
+    fn of<'a>(&self, by_face: &'a [Place]) -> &'a [Place] {
+        &by_face[self.places.start as usize..self.places.end as usize]
+    }
 }
 
 /// (Lower block, other block, run, the run that lies on it.)
@@ -58,7 +66,9 @@ impl Opposite {
         self.find_runs(scene, forces, by_face);
         self.find_opposite(scene, by_face);
         order.clear();
+        make_room(order, by_face.len());
         patches.clear();
+        make_room(patches, self.runs.iter().zip(0..).filter(|(run, number)| run.opposite >= *number).count());
         let mut joined = Joined { scene, history, faces, by_face, order, patches };
         for (number, run) in (0..).zip(&self.runs) {
             if run.opposite >= number {
@@ -68,17 +78,19 @@ impl Opposite {
     }
 
     fn find_runs(&mut self, scene: &PatchScene, forces: &[FacetForce], by_face: &[Place]) {
+        let of_one_run = |a: &Place, b: &Place| (a.0, a.1) == (b.0, b.1);
         self.runs.clear();
+        make_room(&mut self.runs, by_face.chunk_by(of_one_run).count());
         let mut start = 0;
-        for places in by_face.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
+        for places in by_face.chunk_by(of_one_run) {
             let (_, target, first) = places[0];
-            let places = start..start + places.len();
+            let places = start..start + places.len() as u32;
             start = places.end;
             let (owner, direction, pressure) = (scene.owner(first), Vec3::zeros(), 0.0);
             self.runs.push(Run { places, owner, target, direction, pressure, opposite: NONE });
         }
         let press = |run: &mut Run| {
-            let places = &by_face[run.places.clone()];
+            let places = run.of(by_face);
             let pressure = |t: u32| scene.sums(t).pressure.max(0.0);
             let total: f64 = places.iter().map(|&(_, _, t)| pressure(t)).sum();
             run.pressure = total;
@@ -103,6 +115,7 @@ impl Opposite {
         runs.iter().for_each(|run| starts[run.owner.min(run.target).index() + 1] += 1);
         (0..blocks).for_each(|block| starts[block + 1] += starts[block]);
         by_pair.clear();
+        make_room(by_pair, runs.len());
         by_pair.resize(runs.len(), (BlockId(0), BlockId(0), 0, NONE));
         for (number, run) in (0..).zip(&*runs) {
             let (lower, higher) = (run.owner.min(run.target), run.owner.max(run.target));
@@ -124,10 +137,10 @@ impl Opposite {
             }
             for (_, _, number, opposite) in own {
                 let run = &all[*number as usize];
-                let law = scene.law(&by_face[run.places.clone()]);
+                let law = scene.law(run.of(by_face));
                 let is_free = |&(_, _, other, taken): &PairRun| {
                     let other = &all[other as usize];
-                    let same_law = || match (law, scene.law(&by_face[other.places.clone()])) {
+                    let same_law = || match (law, scene.law(other.of(by_face))) {
                         (Some(a), Some(b)) => std::ptr::addr_eq(a, b),
                         _ => false,
                     };
@@ -168,24 +181,26 @@ struct Joined<'a> {
 impl Joined<'_> {
     /// Adds the patch, or the patches, of a run and the one that lies on it, if there is one.
     fn add(&mut self, run: &Run, other: Option<&Run>) {
-        let (face, target, _) = self.by_face[run.places.start];
+        let (face, target, _) = run.of(self.by_face)[0];
         let runs = || std::iter::once(run).chain(other);
         let start = self.order.len();
         let Some(divided) = self.divided(runs(), (face, target)) else {
-            runs().for_each(|run| self.order.extend_from_slice(&self.by_face[run.places.clone()]));
+            runs().for_each(|run| self.order.extend_from_slice(run.of(self.by_face)));
             return self.put(start, run, (number_of(face, None), 1.0));
         };
         for rest in runs().filter(|run| run.owner != divided.owner) {
-            self.order.extend_from_slice(&self.by_face[rest.places.clone()]);
+            self.order.extend_from_slice(rest.of(self.by_face));
             self.put(start, run, (number_of(face, None), 0.0));
         }
         let total: f64 = runs().map(|run| run.pressure).sum();
         let part = |place: &Place| self.faces.part_of(self.scene.touch(place.2).triangle);
-        let mut start = self.order.len();
-        self.order.extend_from_slice(&self.by_face[divided.places.clone()]);
-        self.order[start..].sort_unstable_by_key(|place| (part(place), place.2));
-        for places in self.order[start..].chunk_by(|a, b| part(a) == part(b)) {
-            let (places, face) = (start..start + places.len(), number_of(face, Some(part(&places[0]))));
+        let first = self.order.len();
+        self.order.extend_from_slice(divided.of(self.by_face));
+        self.order[first..].sort_unstable_by_key(|place| (part(place), place.2));
+        let mut start = first as u32;
+        for places in self.order[first..].chunk_by(|a, b| part(a) == part(b)) {
+            let (places, face) =
+                (start..start + places.len() as u32, number_of(face, Some(part(&places[0]))));
             start = places.end;
             let weight = total / divided.pressure;
             self.patches.push(PatchFacets { places, face, target, owner: run.owner, weight });
@@ -198,7 +213,7 @@ impl Joined<'_> {
         runs: impl Iterator<Item = &'r Run>,
         (remembered, target): (u32, BlockId),
     ) -> Option<&'r Run> {
-        let face = |run: &Run| self.by_face[run.places.start].0;
+        let face = |run: &Run| run.of(self.by_face)[0].0;
         let area_m2 = |run: &Run| self.faces.area_m2(face(run));
         let run = runs.min_by(|a, b| area_m2(a).total_cmp(&area_m2(b)))?;
         // Without answers of nodes blocks count as rigid.
@@ -211,7 +226,7 @@ impl Joined<'_> {
         if was_divided(self.history, remembered, target) {
             return Some(run);
         }
-        let areas_m2 = self.by_face[run.places.clone()].iter().map(|place| {
+        let areas_m2 = run.of(self.by_face).iter().map(|place| {
             let corners = self
                 .scene
                 .input
@@ -224,7 +239,7 @@ impl Joined<'_> {
 
     /// Makes a patch of the facets from a place on, under the face of a run.
     fn put(&mut self, start: usize, &Run { owner, target, .. }: &Run, (face, weight): (u32, f64)) {
-        let places = start..self.order.len();
+        let places = start as u32..self.order.len() as u32;
         self.patches.push(PatchFacets { places, face, target, owner, weight });
     }
 }

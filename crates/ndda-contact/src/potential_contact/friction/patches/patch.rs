@@ -59,13 +59,20 @@ pub(super) struct Moved<'a> {
 /// The facets of a patch, in a row among all.
 #[derive(Clone, Debug)]
 pub(super) struct PatchFacets {
-    pub places: Range<usize>,
+    pub places: Range<u32>,
     /// Number of the face, and the block that it touches, under which its friction is remembered; the block of the face.
     pub face: u32,
     pub target: BlockId,
     pub owner: BlockId,
     /// Factor on the normal force of its facets in Coulomb's law: above 1 where they also carry the friction of the opposite face, whose facets then have 0.
     pub weight: f64,
+}
+
+impl PatchFacets {
+    /// Its facets in the list of all.
+    pub(super) fn of<'a>(&self, order: &'a [Place]) -> &'a [Place] {
+        &order[self.places.start as usize..self.places.end as usize]
+    }
 }
 
 /// The contact of one face with one block; facets of the block's own face that lies on it count with the opposite sign.
@@ -84,9 +91,6 @@ pub(super) struct ContactPatch {
     pub most_n: f64,
     /// Its place among those whose friction is searched for; none where it is slight.
     pub detail: Option<u32>,
-    /// Force [N] on it, and torque [N m] about the centre, but for its own friction.
-    pub load_n: Vec3,
-    pub load_torque_n_m: Vec3,
     /// Whether one of both blocks deforms.
     pub deforms: bool,
     /// Slip that loads other than contact bring within a step from rest: less is not resolved [m].
@@ -97,6 +101,13 @@ pub(super) struct ContactPatch {
     pub force_n: Vec3,
     pub torque_n_m: f64,
     pub slides: bool,
+}
+
+/// Force [N] on a patch, and torque [N m] about its centre, but for its own friction.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct PatchLoads {
+    load_n: Vec3,
+    torque_n_m: Vec3,
 }
 
 /// Details of a patch whose friction is searched for.
@@ -136,7 +147,6 @@ impl ContactPatch {
         let (has_law, deforms) = (law.is_some() && facets.weight > 0.0, deforms(owner) || deforms(target));
         *self = Self { owner, target, has_law, deforms, ..Self::default() };
         self.sum(run, scene, forces);
-        self.add_loads(run, scene, forces);
         if !self.has_friction() {
             return;
         }
@@ -171,9 +181,9 @@ impl ContactPatch {
     }
 
     /// Pushes its owner or, with the opposite sign, its target by the normal force, and by friction of facets.
-    pub(super) fn apply_loads(&self, body: &mut Body, sign: f64) {
-        body.push(&self.center, &(sign * self.load_n));
-        body.torque_n_m += sign * self.load_torque_n_m;
+    pub(super) fn apply_loads(&self, loads: &PatchLoads, body: &mut Body, sign: f64) {
+        body.push(&self.center, &(sign * loads.load_n));
+        body.torque_n_m += sign * loads.torque_n_m;
     }
 
     /// Energy [J] by which friction did less than Coulomb's law takes from a displacement of the surfaces, D(u, θ) + F·u + T θ ≥ 0: none where the
@@ -250,17 +260,19 @@ impl ContactPatch {
     }
 
     /// Loads about the centre.
-    fn add_loads(&mut self, run: &[Place], scene: &PatchScene, forces: &[FacetForce]) {
+    pub(super) fn loads(&self, run: &[Place], scene: &PatchScene, forces: &[FacetForce]) -> PatchLoads {
+        let mut loads = PatchLoads::default();
         for &(_, _, t) in run {
             let FacetMoments { pressure, .. } = *scene.sums(t);
             if pressure > 0.0 {
                 let FacetForce { push, shear, center, .. } = &forces[t as usize];
                 let sign = self.sign_of(scene.touch(t));
                 let (arm, load) = (center - self.center, sign * pressure * (push + shear));
-                self.load_n += load;
-                self.load_torque_n_m += arm.cross(&load);
+                loads.load_n += load;
+                loads.torque_n_m += arm.cross(&load);
             }
         }
+        loads
     }
 }
 
