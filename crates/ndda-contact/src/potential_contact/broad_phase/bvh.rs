@@ -16,7 +16,7 @@ use crate::affine::face_contactor::FaceContactor;
 use crate::affine::surface::BlockFaces;
 use crate::broad_phase::block_bvh::{BlockBvh, node_touches, to_parry};
 use crate::broad_phase::block_pairs::BlockPairs;
-use crate::broad_phase::finder::{BroadPhase, BroadScene, FEW_NODES, Side, TriangleAt, shape_of};
+use crate::broad_phase::finder::{BroadPhase, BroadScene, FEW_NODES, Side, TetFaces, TriangleAt, shape_of};
 use crate::broad_phase::pair_lists::{Fresh, PairLists};
 use crate::broad_phase::pair_run::PairRun;
 use crate::integration::capacity::MOST_CORNERS;
@@ -295,6 +295,7 @@ impl Near<'_> {
             return;
         }
         found.boxes.clear();
+        found.faces.clear();
         if self.own[other.index()].is_none() && self.scene.hulls.affine_target(other).is_none() {
             found.boxes.extend(self.scene.blocks.tets_of(other).map(|j| self.scene.tet_box(j)));
         }
@@ -360,19 +361,28 @@ impl Near<'_> {
             return;
         }
         let tets = scene.blocks.tets_of(other);
-        let Fresh { boxes, tets: near, .. } = found;
-        let mut add = |j: usize, there: &Aabb| {
-            let others = || scene.blocks.tet_corners(TetId(j as u32), scene.position);
-            let is_near = bounds.touches(there) && !triangle.is_apart_from(&others());
-            if is_near && !(block == other && scene.are_neighbours(i, j)) {
+        let Fresh { boxes, faces, tets: near, .. } = found;
+        let corners_of = |j: usize| scene.blocks.tet_corners(TetId(j as u32), scene.position);
+        let mut add = |j: usize, is_apart: bool| {
+            if !is_apart && !(block == other && scene.are_neighbours(i, j)) {
                 near.push(TetId(j as u32));
             }
         };
         match &self.own[other.index()] {
-            None => tets.zip(&*boxes).for_each(|(j, there)| add(j, there)),
+            None => {
+                if faces.is_empty() {
+                    faces.extend(tets.clone().map(|j| TetFaces::new(corners_of(j))));
+                }
+                for ((j, there), faces) in tets.zip(&*boxes).zip(&*faces) {
+                    add(j, !bounds.touches(there) || triangle.is_apart_from_faces(faces));
+                }
+            }
             Some(own) => {
                 let leaves = own.tets_near_triangle(&triangle.corners, triangle.reach_m);
-                leaves.map(|leaf| tets.start + leaf).for_each(|j| add(j, &scene.tet_box(j)));
+                for j in leaves.map(|leaf| tets.start + leaf) {
+                    let is_near = bounds.touches(&scene.tet_box(j));
+                    add(j, !is_near || triangle.is_apart_from(&corners_of(j)));
+                }
             }
         }
         found.take_tets(TriangleId(i as u32));

@@ -142,17 +142,31 @@ impl Candidates {
         owner: BlockId,
         numbers: Range<u32>,
     ) -> impl Iterator<Item = Facet<'_>> {
+        self.facets_that(owner, numbers, |_| true)
+    }
+
+    /// Those of the facets with these numbers whose two blocks, by their place in `neighbours`, are wanted.
+    #[inline]
+    pub(crate) fn facets_that(
+        &self,
+        owner: BlockId,
+        numbers: Range<u32>,
+        is_wanted: impl Fn(u32) -> bool,
+    ) -> impl Iterator<Item = Facet<'_>> {
         let (first, mut number) = (self.start[owner.index()], numbers.start);
         let places = (numbers.start - first) as usize..(numbers.end - first) as usize;
         let mut rest = self.lists.of(owner).within(places);
         std::iter::from_fn(move || {
-            let runs = rest.next_facet(self.split_by_element)?;
-            let (triangle, neighbours) = (runs.run.triangle, runs.run.neighbours);
-            let (a, b) = self.neighbours[neighbours as usize];
-            let target = if a == owner { b } else { a };
-            let facet = Facet { number, triangle, owner, target, neighbours, runs };
-            number += runs.len() as u32;
-            Some(facet)
+            loop {
+                let runs = rest.next_facet(self.split_by_element)?;
+                let (this, triangle, neighbours) = (number, runs.run.triangle, runs.run.neighbours);
+                number += runs.len() as u32;
+                if is_wanted(neighbours) {
+                    let (a, b) = self.neighbours[neighbours as usize];
+                    let target = if a == owner { b } else { a };
+                    return Some(Facet { number: this, triangle, owner, target, neighbours, runs });
+                }
+            }
         })
     }
 

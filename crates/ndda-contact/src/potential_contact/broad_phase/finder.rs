@@ -112,12 +112,20 @@ impl TriangleAt {
     /// either, while its nodes stay within the margin, is that near to a point where it is now.
     pub(crate) fn is_apart_from(&self, others: &[Vec3; 4]) -> bool {
         self.are_on_one_side(others)
-            || TET_FACES.iter().zip(others).any(|(&[i, j, k], opposite)| {
-                let normal = triangle_area_vector(&[others[i], others[j], others[k]]);
-                // A tetrahedron may be inside out while it is looked at.
-                let outward = if normal.dot(&(opposite - others[i])) > 0.0 { -normal } else { normal };
-                self.are_beyond(&outward, &others[i], &self.corners)
+            || (0..4).any(|face| {
+                let (outward, from) = outward_normal(others, face);
+                self.are_beyond(&outward, &from, &self.corners)
             })
+    }
+
+    /// The same of a tetrahedron whose faces are known.
+    pub(crate) fn is_apart_from_faces(&self, other: &TetFaces) -> bool {
+        let TetFaces { corners, faces } = other;
+        let is_beyond = |(outward, norm2, from): &(Vec3, f64, Vec3)| {
+            let least = self.reach_m * self.reach_m * norm2;
+            self.corners.iter().map(|x| outward.dot(&(x - from))).all(|d| d > 0.0 && d * d > least)
+        };
+        self.are_on_one_side(corners) || faces.iter().any(is_beyond)
     }
 
     /// Whether the points are before the triangle's plane or behind it by more than the margin.
@@ -130,6 +138,34 @@ impl TriangleAt {
     fn are_beyond(&self, normal: &Vec3, from: &Vec3, points: &[Vec3]) -> bool {
         let least = self.reach_m * self.reach_m * normal.norm_squared();
         points.iter().map(|x| normal.dot(&(x - from))).all(|d| d > 0.0 && d * d > least)
+    }
+}
+
+/// Outward area vector of the face of a tetrahedron opposite to a corner, and a point of it.
+fn outward_normal(corners: &[Vec3; 4], opposite: usize) -> (Vec3, Vec3) {
+    let [i, j, k] = TET_FACES[opposite];
+    let normal = triangle_area_vector(&[corners[i], corners[j], corners[k]]);
+    // A tetrahedron may be inside out while it is looked at.
+    let is_inward = normal.dot(&(corners[opposite] - corners[i])) > 0.0;
+    (if is_inward { -normal } else { normal }, corners[i])
+}
+
+/// A tetrahedron and its faces, to be compared with many triangles.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TetFaces {
+    corners: [Vec3; 4],
+    /// Outward area vector of each, the square of its length, and a point of the face.
+    faces: [(Vec3, f64, Vec3); 4],
+}
+
+impl TetFaces {
+    /// Those of the tetrahedron with these corners [m].
+    pub(crate) fn new(corners: [Vec3; 4]) -> Self {
+        let faces = std::array::from_fn(|face| {
+            let (outward, from) = outward_normal(&corners, face);
+            (outward, outward.norm_squared(), from)
+        });
+        Self { corners, faces }
     }
 }
 

@@ -4,6 +4,7 @@ use ndda_mesh::geometry::Aabb;
 use ndda_mesh::{BlockId, BlockSet, TetId, TriangleId};
 
 use crate::broad_phase::block_pairs::{BlockPairs, Runs};
+use crate::broad_phase::finder::TetFaces;
 use crate::broad_phase::pair_run::PairRun;
 
 /// The pairs of all blocks, by the block of the triangle; each block's are sorted by (triangle, tetrahedron).
@@ -100,6 +101,8 @@ pub(super) struct Fresh {
     /// Boxes of the block's triangles, and of the tetrahedra of another one, where they have no trees.
     pub(super) triangles: Vec<Aabb>,
     pub(super) boxes: Vec<Aabb>,
+    /// The faces of these tetrahedra, once a triangle is compared with them.
+    pub(super) faces: Vec<TetFaces>,
 }
 
 impl Fresh {

@@ -148,10 +148,8 @@ impl Scratch {
     /// Finds the regions of facets of one block.
     fn look_at(&mut self, arch: Arch, scene: &Scene, (owner, numbers): (BlockId, Range<u32>)) {
         let (mut last, mut corners, opens) = (None, Triangle::default(), !scene.openings.is_empty());
-        for facet in scene.candidates.facets_within(owner, numbers) {
-            if scene.hulls.are_apart(facet.neighbours) {
-                continue;
-            }
+        let may_touch = |neighbours: u32| !scene.hulls.are_apart(neighbours);
+        for facet in scene.candidates.facets_that(owner, numbers, may_touch) {
             // Facets of one triangle follow each other.
             if last != Some(facet.triangle) {
                 (last, corners) = (Some(facet.triangle), Triangle::new(scene, facet.triangle));

@@ -34,9 +34,7 @@ use crate::friction::patches::detail::{DetailScene, facets_of};
 use crate::friction::patches::nodal::{Nodal, NodalSide, SearchedPatch, SideScene};
 use crate::friction::patches::opposite::Opposite;
 use crate::friction::patches::parts::FaceParts;
-use crate::friction::patches::patch::{
-    ContactPatch, Moved, PatchDetail, PatchFacets, PatchLoads, PatchSummary,
-};
+use crate::friction::patches::patch::{ContactPatch, PatchDetail, PatchFacets, PatchLoads, PatchSummary};
 use crate::friction::patches::solve::chunks::Division;
 use crate::friction::patches::solve::newton::Newton;
 use crate::friction::patches::solve::stage::{self, Visits};
