@@ -18,13 +18,18 @@ def bodies(body, penalty_pa, potential, count=2, **more):
     return {"set": changes | more}
 
 
-def pile(body, penalty_pa):
+def pile(body, penalty_pa, **more):
     """The fewest tetrahedra; what the error and the depth at the end need, and nothing else, is written."""
     output = "(frames: 1, fields: [Displacement, BlockId], format: Base64, history_rows: 14)"
-    return bodies(body, penalty_pa, "Smooth()", 0, **{"rock[0].body": body, "rock[0].fill": "Fewest", "output": output})
+    changes = {"rock[0].body": body, "rock[0].fill": "Fewest", "output": output}
+    return bodies(body, penalty_pa, "Smooth()", 0, **changes, **more)
 
 
+COARSE = {"contact.friction_tolerance": 1e-3}
 LARGE_PILE_OF_NDDA = [
+    ("rigid, k_n = 10 MPa, friction to 1e-3", pile("Rigid", 1e7, **COARSE), (1e-2, 8e-3)),
+    ("rigid, k_n = 20 MPa, friction to 1e-3", pile("Rigid", 2e7, **COARSE), (4e-3,)),
+    ("rigid, k_n = 10 MPa", pile("Rigid", 1e7), (1e-2,)),
     ("rigid, k_n = 12 MPa", pile("Rigid", 1.2e7), (5e-3,)),
     ("rigid, k_n = 20 MPa", pile("Rigid", 2e7), (4e-3,)),
     ("rigid, k_n = 50 MPa", pile("Rigid", 5e7), (2e-3, 1e-3)),

@@ -77,3 +77,56 @@ fn barton_bandis(residual_deg: f64, rough: &scene::Roughness, shear_penalty_pa_m
     let law = law.reduced_by(1.0 / rough.strength_factor);
     if rough.mobilised { law.mobilised() } else { law }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::{Model, Run};
+
+    /// Three cubes that lie on each other and slide at different speeds for 20 ms.
+    fn text(tolerance: &str) -> String {
+        let cube = |name: &str, more: &str| {
+            format!(
+                "(name: {name:?}, material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), {more})"
+            )
+        };
+        let cubes = [
+            cube("a", "velocity_m_s: (0.3, 0, 0)"),
+            cube("b", "at_m: (0.2, 0, 1)"),
+            cube("c", "at_m: (0.1, 0.1, 2), velocity_m_s: (0, 0.2, 0)"),
+        ];
+        format!(
+            r#"(
+            title: "Three cubes slide on each other", time: (step_s: 1e-3, end_s: 0.02), gravity_m_s2: (0, 0, -9.8),
+            materials: [(name: "rock", density_kg_m3: 2600, young_pa: 20e9, poisson: 0.25)],
+            blocks: [
+                (name: "base", material: "rock", body: Fixed, shape: Box(size_m: (9, 3, 1), cells: (1, 1, 1)), at_m: (-3, -1, -1)),
+                {}
+            ],
+            contact: Potential(penalty_pa: 1e8, potential: Smooth(), friction: (friction_deg: 30), {tolerance}),
+            monitors: [(name: "lowest", block: "a", at: Largest((1, 0, 0)))],
+        )"#,
+            cubes.join(",\n")
+        )
+    }
+
+    /// Velocity of the lowest along x at the end [m/s].
+    fn velocity_m_s(tolerance: &str) -> f64 {
+        let outcome = Run::new(Model::from_text(&text(tolerance)).unwrap()).finish(&mut []).unwrap();
+        outcome.monitor("lowest").unwrap().velocity[0]
+    }
+
+    #[test]
+    fn a_scene_says_how_exactly_friction_is_found() {
+        let [exact, own, coarse] =
+            ["friction_tolerance: 1e-10", "", "friction_tolerance: 1e-2"].map(velocity_m_s);
+        // Friction changes a velocity by no more than μ g n dt in a step, of three cubes: what is left of it does not add up.
+        let of_step = |tolerance: f64| tolerance * 3.0 * 0.577 * 9.8 * 1e-3;
+        assert!((own - exact).abs() <= of_step(1e-7), "{own} {exact}");
+        assert!((coarse - exact).abs() <= of_step(1e-2) && coarse != exact, "{coarse} {exact}");
+        for wrong in ["0", "0.1", "-1e-4"] {
+            let refused = Model::from_text(&text(&format!("friction_tolerance: {wrong}"))).err();
+            let message = refused.expect("it is out of range").to_string();
+            assert!(message.contains("from 1e-10 to 1e-2"), "{message}");
+        }
+    }
+}
