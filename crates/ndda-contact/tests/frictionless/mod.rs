@@ -53,7 +53,9 @@ impl Frictionless {
         self.forces.resize(touching.len(), FacetForce::default());
         let push = |(t, force): (usize, &mut FacetForce)| {
             *force = FacetForce::default();
-            if integrals.overlaps_of(&touching[t]).iter().flat_map(|hit| hit.pressure).sum::<f64>() > 0.0 {
+            if integrals.overlaps_of(&touching[t]).iter().flat_map(|hit| hit.on_target.pressure).sum::<f64>()
+                > 0.0
+            {
                 let corners = blocks.triangle_corners(touching[t].triangle, input.position);
                 force.push = -penalty_pa * triangle_area_vector(&corners).normalize();
                 force.touches = true;
