@@ -44,6 +44,8 @@ impl FromStr for Sensitivity {
 
 /// Velocities of the twin differ by this part of the largest speed.
 const PUSH: f64 = 1e-4;
+/// The same over [`PUSH`]: for several twins, until one parts, where a block hops. One of them may come near to the run by chance.
+const PUSHES: [f64; 3] = [1.0, -1.0, 0.5];
 /// Blocks of the twin may end this part of a tetrahedron's height away: a third of what an accurate label allows.
 const AWAY: f64 = 0.03;
 /// Without growth, a push shifts a block by its speed times the time of the run; this many times that is no growth.
@@ -151,7 +153,7 @@ impl fmt::Display for Parted {
     }
 }
 
-/// Runs the twin of a simulation that has come to its end from `start`, and puts it back into its end. None where both stay together, or
+/// Runs the twin of a simulation that has come to its end from `start`, or several, and puts it back into its end. None where all stay together, or
 /// where somebody asks to end.
 ///
 /// # Errors
@@ -164,12 +166,21 @@ pub(super) fn part(
 ) -> Result<Option<Parted>, StepError> {
     let end = simulation.snapshot();
     let push_m_s = PUSH * simulation.speed_scale_m_s();
-    let time_s = simulation.time_s();
-    let outcome = run(simulation, start, (push_m_s, end.state.step), settle, stop);
-    let twin = (simulation.state().position.clone(), simulation.state().velocity.clone());
-    simulation.restore(end).expect("it is of this simulation");
-    let whole = outcome?;
-    Ok(whole.then(|| compare(simulation, &twin, DRIFTS * push_m_s * time_s)).flatten())
+    let drift_m = DRIFTS * push_m_s * simulation.time_s();
+    let pushes = if hops(simulation) { &PUSHES[..] } else { &PUSHES[..1] };
+    for push in pushes {
+        let outcome = run(simulation, start, (push * push_m_s, end.state.step), settle, stop);
+        let twin = (simulation.state().position.clone(), simulation.state().velocity.clone());
+        simulation.restore(end.clone()).expect("it is of this simulation");
+        if !outcome? {
+            break;
+        }
+        let parted = compare(simulation, &twin, drift_m);
+        if parted.is_some() {
+            return Ok(parted);
+        }
+    }
+    Ok(None)
 }
 
 /// Whether the twin came to its end.
@@ -348,10 +359,10 @@ mod tests {
     }
 
     #[test]
-    fn an_elastic_block_whose_face_hops_while_it_slides_is_sensitive() {
+    fn an_elastic_block_whose_face_hops_while_it_slides_is_sensitive_although_one_twin_ends_near_it() {
         let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
             .join("../../scenes/extreme/elastic_block_stands.ron");
-        let set = ["gravity_ramp_s=0", "contact.penalty_pa=5e10", "output.frames=0"].map(String::from);
+        let set = ["gravity_ramp_s=0", "contact.penalty_pa=6e10", "output.frames=0"].map(String::from);
         let summary = Run::new(Model::open(&file, &set).unwrap()).finish(&mut []).unwrap().summary;
         assert_eq!(summary.label.word, LabelWord::Sensitive, "{:?}", summary.label.reasons);
     }

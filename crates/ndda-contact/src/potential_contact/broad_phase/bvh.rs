@@ -16,9 +16,10 @@ use crate::affine::face_contactor::FaceContactor;
 use crate::affine::surface::BlockFaces;
 use crate::broad_phase::block_bvh::{BlockBvh, node_touches, to_parry};
 use crate::broad_phase::block_pairs::BlockPairs;
-use crate::broad_phase::finder::{BroadPhase, BroadScene, FEW_NODES, Side, TetFaces, TriangleAt, shape_of};
+use crate::broad_phase::finder::{BroadPhase, BroadScene, FEW_NODES, Side, TriangleAt, shape_of};
 use crate::broad_phase::pair_lists::{Fresh, PairLists};
 use crate::broad_phase::pair_run::PairRun;
+use crate::broad_phase::tet_faces::TetFaces;
 use crate::integration::capacity::MOST_CORNERS;
 
 /// Blocks below which a second thread costs more than it brings.

@@ -1,12 +1,13 @@
 //! Which triangles may be in which tetrahedra: the seam, and its definition.
 
-use ndda_mesh::geometry::{Aabb, TET_FACES, triangle_area_vector};
+use ndda_mesh::geometry::{Aabb, triangle_area_vector};
 use ndda_mesh::{BlockId, BlockSet, NodeId, TetId, TriangleId, Vec3};
 
 use crate::affine::convex_target::ConvexBlocks;
 use crate::affine::face::Face;
 use crate::affine::face_contactor::FaceContactor;
 use crate::broad_phase::pair_lists::PairLists;
+use crate::broad_phase::tet_faces::{TetFaces, outward_normal};
 
 /// Blocks of more nodes are compared by their elements only.
 pub(crate) const FEW_NODES: usize = 64;
@@ -138,34 +139,6 @@ impl TriangleAt {
     fn are_beyond(&self, normal: &Vec3, from: &Vec3, points: &[Vec3]) -> bool {
         let least = self.reach_m * self.reach_m * normal.norm_squared();
         points.iter().map(|x| normal.dot(&(x - from))).all(|d| d > 0.0 && d * d > least)
-    }
-}
-
-/// Outward area vector of the face of a tetrahedron opposite to a corner, and a point of it.
-fn outward_normal(corners: &[Vec3; 4], opposite: usize) -> (Vec3, Vec3) {
-    let [i, j, k] = TET_FACES[opposite];
-    let normal = triangle_area_vector(&[corners[i], corners[j], corners[k]]);
-    // A tetrahedron may be inside out while it is looked at.
-    let is_inward = normal.dot(&(corners[opposite] - corners[i])) > 0.0;
-    (if is_inward { -normal } else { normal }, corners[i])
-}
-
-/// A tetrahedron and its faces, to be compared with many triangles.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct TetFaces {
-    corners: [Vec3; 4],
-    /// Outward area vector of each, the square of its length, and a point of the face.
-    faces: [(Vec3, f64, Vec3); 4],
-}
-
-impl TetFaces {
-    /// Those of the tetrahedron with these corners [m].
-    pub(crate) fn new(corners: [Vec3; 4]) -> Self {
-        let faces = std::array::from_fn(|face| {
-            let (outward, from) = outward_normal(&corners, face);
-            (outward, outward.norm_squared(), from)
-        });
-        Self { corners, faces }
     }
 }
 

@@ -9,6 +9,7 @@ pub(crate) mod neighbour_list;
 pub(crate) mod pair_lists;
 mod pair_run;
 pub mod testing;
+mod tet_faces;
 
 pub use bvh::TreeBroadPhase;
 pub use candidates::{Candidates, Facet};

@@ -4,8 +4,8 @@ use ndda_mesh::geometry::Aabb;
 use ndda_mesh::{BlockId, BlockSet, TetId, TriangleId};
 
 use crate::broad_phase::block_pairs::{BlockPairs, Runs};
-use crate::broad_phase::finder::TetFaces;
 use crate::broad_phase::pair_run::PairRun;
+use crate::broad_phase::tet_faces::TetFaces;
 
 /// The pairs of all blocks, by the block of the triangle; each block's are sorted by (triangle, tetrahedron).
 #[derive(Clone, Debug, Default, PartialEq)]
