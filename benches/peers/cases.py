@@ -27,9 +27,8 @@ def pile(body, penalty_pa, **more):
 
 COARSE = {"contact.friction_tolerance": 1e-3}
 LARGE_PILE_OF_NDDA = [
-    ("rigid, k_n = 10 MPa, friction to 1e-3", pile("Rigid", 1e7, **COARSE), (1e-2, 8e-3)),
-    ("rigid, k_n = 20 MPa, friction to 1e-3", pile("Rigid", 2e7, **COARSE), (4e-3,)),
-    ("rigid, k_n = 10 MPa", pile("Rigid", 1e7), (1e-2,)),
+    ("rigid, k_n = 10 MPa, friction to 1e-3", pile("Rigid", 1e7, **COARSE), (6e-3,)),
+    ("rigid, k_n = 12 MPa, friction to 1e-3", pile("Rigid", 1.2e7, **COARSE), (5e-3,)),
     ("rigid, k_n = 12 MPa", pile("Rigid", 1.2e7), (5e-3,)),
     ("rigid, k_n = 20 MPa", pile("Rigid", 2e7), (4e-3,)),
     ("rigid, k_n = 50 MPa", pile("Rigid", 5e7), (2e-3, 1e-3)),

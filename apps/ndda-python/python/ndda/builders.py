@@ -835,6 +835,12 @@ class Contact:
             Coefficient of restitution along the face, from 0 to 1: speed that half an oscillation on a shear
             spring leaves, over that before, while the spring sticks. Needs friction with
             `shear_penalty_pa_m`. Default: springs are damped as contact is along its normal.
+        friction_tolerance : float, optional
+            Tolerance of friction on velocities: change of the friction of a face that does not matter, as a
+            part of the largest μN on its blocks, from 1e-10 to 1e-2. It is an error of slips, which the next
+            step finds anew. Piles of rigid cubes visit their faces a quarter to a half as often with 1e-4 as
+            they do without it. `contact_at: End` has a tolerance of its own. Default: 1e-7, and more with
+            more than 1000 faces in contact.
         material_pairs : list[MaterialPair], optional
             Friction between blocks of two materials, in place of `friction`; a later entry counts more.
             Default: none.
@@ -856,10 +862,11 @@ class Contact:
         friction: Friction | None = None
         restitution: float | None = None
         shear_restitution: float | None = None
+        friction_tolerance: float | None = None
         material_pairs: list[MaterialPair] | None = None
         rock_joints: list[JointLaw] | None = None
         memory: MemoryChoice | None = None
-        _kinds: ClassVar[Mapping[str, str]] = {"penalty_pa": "num", "depth_ratio": "num", "potential": "Potential", "friction": "Friction", "restitution": "num", "shear_restitution": "num", "material_pairs": "[MaterialPair]", "rock_joints": "[JointLaw]", "memory": "Memory"}
+        _kinds: ClassVar[Mapping[str, str]] = {"penalty_pa": "num", "depth_ratio": "num", "potential": "Potential", "friction": "Friction", "restitution": "num", "shear_restitution": "num", "friction_tolerance": "num", "material_pairs": "[MaterialPair]", "rock_joints": "[JointLaw]", "memory": "Memory"}
         _variant: ClassVar[str] = "Potential"
 
 
