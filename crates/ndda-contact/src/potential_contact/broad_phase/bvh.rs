@@ -365,7 +365,7 @@ impl Near<'_> {
         let Fresh { boxes, faces, tets: near, .. } = found;
         let corners_of = |j: usize| scene.blocks.tet_corners(TetId(j as u32), scene.position);
         let mut add = |j: usize, is_apart: bool| {
-            if !is_apart && !(block == other && scene.are_neighbours(i, j)) {
+            if !(is_apart || block == other && scene.are_neighbours(i, j)) {
                 near.push(TetId(j as u32));
             }
         };
