@@ -89,8 +89,8 @@ pub fn compare(case: &Case, twin: &Scene, map: &Map, reorder: impl Fn(&Motion) -
     }
 }
 
-/// What the tolerance of contact at the end of the step leaves open in all steps together: in each of them forces to a part of the weight, and so
-/// speeds to that of g Δt [m/s].
+/// Error of speeds that the tolerance of contact at the end of the step allows over a whole run [m/s]: each step finds forces to a part of the weight,
+/// and thus speeds to that part of g Δt; the errors of all steps add up.
 fn end_search_m_s(scene: &Scene) -> f64 {
     let ContactAt::End { tolerance, .. } = scene.time.contact_at else { return 0.0 };
     tolerance * Vec3::from(scene.gravity_m_s2).norm() * scene.time.end_s

@@ -44,7 +44,8 @@ impl FromStr for Sensitivity {
 
 /// Velocities of the twin differ by this part of the largest speed.
 const PUSH: f64 = 1e-4;
-/// The same over [`PUSH`]: for several twins, until one parts, where a block hops. One of them may come near to the run by chance.
+/// Pushes of the twins over [`PUSH`]. There is one twin; where a block hops, the next one is run as long as none has parted, since a single one may end near the
+/// run by chance.
 const PUSHES: [f64; 3] = [1.0, -1.0, 0.5];
 /// Blocks of the twin may end this part of a tetrahedron's height away: a third of what an accurate label allows.
 const AWAY: f64 = 0.03;

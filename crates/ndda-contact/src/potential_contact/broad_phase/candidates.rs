@@ -145,7 +145,7 @@ impl Candidates {
         self.facets_that(owner, numbers, |_| true)
     }
 
-    /// Those of the facets with these numbers whose two blocks, by their place in `neighbours`, are wanted.
+    /// The facets with these numbers, but only those of wanted pairs of blocks; `is_wanted` gets the place of the pair in [`Candidates::neighbours`].
     #[inline]
     pub(crate) fn facets_that(
         &self,

@@ -119,12 +119,11 @@ impl TriangleAt {
             })
     }
 
-    /// The same of a tetrahedron whose faces are known.
+    /// As [`is_apart_from`](Self::is_apart_from), for a tetrahedron whose face normals have been found before.
     pub(crate) fn is_apart_from_faces(&self, other: &TetFaces) -> bool {
         let TetFaces { corners, faces } = other;
         let is_beyond = |(outward, norm2, from): &(Vec3, f64, Vec3)| {
-            let least = self.reach_m * self.reach_m * norm2;
-            self.corners.iter().map(|x| outward.dot(&(x - from))).all(|d| d > 0.0 && d * d > least)
+            self.are_beyond_plane((outward, *norm2), from, &self.corners)
         };
         self.are_on_one_side(corners) || faces.iter().any(is_beyond)
     }
@@ -137,7 +136,12 @@ impl TriangleAt {
 
     /// Whether n·(x − p) > reach |n| for all of the points, without a root.
     fn are_beyond(&self, normal: &Vec3, from: &Vec3, points: &[Vec3]) -> bool {
-        let least = self.reach_m * self.reach_m * normal.norm_squared();
+        self.are_beyond_plane((normal, normal.norm_squared()), from, points)
+    }
+
+    /// The test of [`are_beyond`](Self::are_beyond), given n and |n|².
+    fn are_beyond_plane(&self, (normal, norm2): (&Vec3, f64), from: &Vec3, points: &[Vec3]) -> bool {
+        let least = self.reach_m * self.reach_m * norm2;
         points.iter().map(|x| normal.dot(&(x - from))).all(|d| d > 0.0 && d * d > least)
     }
 }

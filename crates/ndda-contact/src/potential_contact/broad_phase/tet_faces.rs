@@ -21,7 +21,7 @@ pub(crate) struct TetFaces {
 }
 
 impl TetFaces {
-    /// Those of the tetrahedron with these corners [m].
+    /// Finds the faces of a tetrahedron from its corners [m].
     pub(crate) fn new(corners: [Vec3; 4]) -> Self {
         let faces = std::array::from_fn(|face| {
             let (outward, from) = outward_normal(&corners, face);

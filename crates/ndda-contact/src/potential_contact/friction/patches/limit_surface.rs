@@ -134,7 +134,7 @@ impl LimitSurface {
         Arch::new().dispatch(SlidingFriction { surface: self, stiffness, slips, tolerance_n, is_first })
     }
 
-    /// The same where the patch does not stick for sure.
+    /// [`friction`](Self::friction) of a patch that may slide: the minimum is searched for.
     #[inline(always)]
     fn sliding_friction(
         &self,
@@ -237,7 +237,7 @@ impl WithSimd for SlidingFriction<'_> {
     }
 }
 
-/// What all cells of a patch share: its slip, ρ²/r² and ε².
+/// Slip of the patch, ρ²/r² and ε²: the same for all of its cells.
 #[derive(Clone, Copy)]
 struct Cell {
     slip: Vec3,

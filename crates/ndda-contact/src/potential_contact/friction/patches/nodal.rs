@@ -225,6 +225,7 @@ fn add_bonds(scene: &PatchScene, asked: &[BlockId], columns: &mut [Vec<Vec3>]) {
         }
     }
 }
+
 impl BlockSides {
     fn begin(&mut self) {
         self.weights.clear();

@@ -50,7 +50,7 @@ type PairRun = (BlockId, BlockId, u32, u32);
 pub(super) struct Opposite {
     runs: Vec<Run>,
     by_pair: Vec<PairRun>,
-    /// Where the runs of pairs with each lower block begin; while they are put there, where the next one goes.
+    /// For each block, the place in `by_pair` for the next run whose pair has it as the lower block.
     starts: Vec<u32>,
 }
 
