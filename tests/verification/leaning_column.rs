@@ -24,15 +24,23 @@ fn slope() -> f64 {
     (0.5 * WIDTH_M - INSIDE_M) / (0.5 * HEIGHT_M)
 }
 
-/// The column on level ground under gravity and forces, with a penalty.
-fn column_under(gravity_m_s2: [f64; 2], forces: &str, penalty_pa: f64) -> Simulation {
+/// The column in one piece or in equal ones, on level ground under gravity and forces, with a penalty.
+fn column_under(pieces: usize, gravity_m_s2: [f64; 2], forces: &str, penalty_pa: f64) -> Simulation {
     let [along, up] = gravity_m_s2;
+    let height_m = HEIGHT_M / pieces as f64;
+    let piece = |k: usize| {
+        let at_m = k as f64 * height_m;
+        format!(
+            "(name: \"column_{k}\", material: \"rock\", body: Rigid, shape: Box(size_m: ({WIDTH_M}, 1, {height_m}), cells: (1, 1, 1)), at_m: (0, 0, {at_m})),"
+        )
+    };
+    let pieces: String = (0..pieces).map(piece).collect();
     simulation(&format!(
         "(title: \"column\", time: (step_s: 1e-3, end_s: 1), gravity_m_s2: ({along}, 0, {up}),
           materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: {DENSITY})],
           blocks: [
               (name: \"floor\", material: \"rock\", body: Fixed, shape: Box(size_m: (4, 3, 1), cells: (1, 1, 1)), at_m: (-1, -1, -1)),
-              (name: \"column\", material: \"rock\", body: Rigid, shape: Box(size_m: ({WIDTH_M}, 1, {HEIGHT_M}), cells: (1, 1, 1))),
+              {pieces}
           ],
           forces: [{forces}],
           contact: Potential(penalty_pa: {penalty_pa:e}, potential: Smooth(reference_m: 1), friction: (friction_deg: 60)))"
@@ -41,19 +49,34 @@ fn column_under(gravity_m_s2: [f64; 2], forces: &str, penalty_pa: f64) -> Simula
 
 /// The column under tilted gravity, with the penalty of this M.
 fn column(m: f64) -> Simulation {
-    let secant2 = 1.0 + slope() * slope();
-    let normal_n = DENSITY * G * HEIGHT_M * WIDTH_M / secant2.sqrt();
-    let penalty_pa = normal_n * HEIGHT_M * secant2 / (18.0 * INSIDE_M.powi(3) * m);
-    column_under([G * slope() / secant2.sqrt(), -G / secant2.sqrt()], "", penalty_pa)
+    column_of(1, penalty_pa(m))
 }
 
-/// Tilt of the column [rad].
-fn tilt(simulation: &Simulation) -> f64 {
-    let nodes = simulation.blocks().nodes_of(BlockId(1));
+/// The penalty of this M of the column under tilted gravity.
+fn penalty_pa(m: f64) -> f64 {
+    let secant2 = 1.0 + slope() * slope();
+    let normal_n = DENSITY * G * HEIGHT_M * WIDTH_M / secant2.sqrt();
+    normal_n * HEIGHT_M * secant2 / (18.0 * INSIDE_M.powi(3) * m)
+}
+
+/// The column in so many pieces under tilted gravity.
+fn column_of(pieces: usize, penalty_pa: f64) -> Simulation {
+    let secant = slope().hypot(1.0);
+    column_under(pieces, [G * slope() / secant, -G / secant], "", penalty_pa)
+}
+
+/// Tilt of the column, or of a piece of it [rad].
+fn tilt(simulation: &Simulation, block: u32) -> f64 {
+    let nodes = simulation.blocks().nodes_of(BlockId(block));
     let (rest, now) =
         (&simulation.blocks().rest_position[nodes.clone()], &simulation.state().position[nodes]);
-    let corner = |at: Vec3| now[rest.iter().position(|x| (x - at).norm() < 1e-9).expect("a corner")];
-    let side = corner(Vec3::new(0.0, 0.0, HEIGHT_M)) - corner(Vec3::zeros());
+    let [low_m, high_m] =
+        rest.iter().fold([f64::MAX, f64::MIN], |[low, high], x| [low.min(x.z), high.max(x.z)]);
+    let corner = |z: f64| {
+        let at = Vec3::new(0.0, 0.0, z);
+        now[rest.iter().position(|x| (x - at).norm() < 1e-9).expect("a corner")]
+    };
+    let side = corner(high_m) - corner(low_m);
     side.x.atan2(side.z)
 }
 
@@ -77,7 +100,7 @@ fn a_column_leans_by_what_contact_gives_way_at_its_edge() {
         row(
             "leaning column",
             &format!("tilt at M = {m} [rad]"),
-            tilt(&simulation),
+            tilt(&simulation, 1),
             // The strip is as wide as the contact is deep at the edge, θ of its 3 d, times the slope: of first order in θ.
             Within(exact, 0.02),
         );
@@ -91,7 +114,7 @@ fn beyond_four_parts_of_27_it_falls_although_its_weight_acts_inside_the_edge() {
     assert!(settled.is_err(), "{settled:?}");
     // A rigid edge lets it go where its weight has passed the edge.
     let over = INSIDE_M / (0.5 * HEIGHT_M);
-    row("leaning column", "tilt at M = 0.185 [rad]", tilt(&simulation).abs(), AtLeast(over));
+    row("leaning column", "tilt at M = 0.185 [rad]", tilt(&simulation, 1).abs(), AtLeast(over));
 }
 
 /// A force F at a height h_F on the far side of the column, which is pushed towards the edge until the line of weight and force is d inside: of
@@ -102,17 +125,57 @@ fn a_column_that_is_pushed_leans_as_one_under_tilted_gravity() {
     let (at_m, m) = (3.0, 0.1);
     let force_n = weight_n * (0.5 * WIDTH_M - INSIDE_M) / at_m;
     let arm_m = 0.5 * HEIGHT_M + (WIDTH_M - INSIDE_M) * force_n / weight_n;
-    let force = format!("(block: \"column\", at_m: (0, 0.5, {at_m}), force_n: ({force_n}, 0, 0))");
+    let force = format!("(block: \"column_0\", at_m: (0, 0.5, {at_m}), force_n: ({force_n}, 0, 0))");
     let penalty_pa = weight_n * arm_m / (9.0 * INSIDE_M.powi(3) * m);
-    let mut simulation = column_under([0.0, -G], &force, penalty_pa);
+    let mut simulation = column_under(1, [0.0, -G], &force, penalty_pa);
     simulation.settle(&Settle::new(1e-6, 100_000)).unwrap();
     let exact = (1.0 - left(m)) * INSIDE_M / arm_m;
     row(
         "leaning column",
         "tilt of a column that is pushed, at M = 0.1 [rad]",
-        tilt(&simulation),
+        tilt(&simulation, 1),
         Within(exact, 0.02),
     );
+}
+
+/// Tilts of equal pieces of the column under tilted gravity [rad], the lowest first, joint by joint until they change no more. The force on a joint meets it where the tilts
+/// of all pieces above take it; where it does so in the middle third, all of the joint bears, with a slope of pressures of 12 N e/(w B³) for an eccentricity e.
+fn tilts_of_pieces(pieces: usize, penalty_pa: f64) -> Vec<f64> {
+    let (height_m, secant2) = (HEIGHT_M / pieces as f64, 1.0 + slope() * slope());
+    let piece_n = DENSITY * G * height_m * WIDTH_M / secant2.sqrt();
+    let mut tilts = vec![0.0; pieces];
+    for _ in 0..500 {
+        let mut below = 0.0;
+        for joint in 0..pieces {
+            let above = (pieces - joint) as f64;
+            let moved = |piece: usize| {
+                let full: f64 = tilts[joint..piece].iter().sum();
+                height_m * (full + 0.5 * tilts[piece])
+            };
+            let moved_m = secant2 * (joint..pieces).map(moved).sum::<f64>() / above;
+            let inside_m = 0.5 * WIDTH_M - 0.5 * above * height_m * slope() - moved_m;
+            let per_width = above * piece_n / penalty_pa;
+            let parted = match 3.0 * inside_m < WIDTH_M {
+                true => per_width / (9.0 * inside_m * inside_m),
+                false => 6.0 * per_width * (0.5 * WIDTH_M - inside_m) / WIDTH_M.powi(3),
+            };
+            below += parted;
+            tilts[joint] = below;
+        }
+    }
+    tilts
+}
+
+/// Joints across the column change its fall little: the lowest one bears all of the weight, with the longest arm.
+#[test]
+fn a_column_in_four_pieces_leans_by_what_each_of_its_joints_gives_way() {
+    let penalty_pa = penalty_pa(0.05);
+    let mut simulation = column_of(4, penalty_pa);
+    simulation.settle(&Settle::new(1e-6, 100_000)).unwrap();
+    for (exact, block) in tilts_of_pieces(4, penalty_pa).into_iter().zip(1..) {
+        let name = format!("tilt of piece {block} of a column in four, M = 0.05 [rad]");
+        row("leaning column", &name, tilt(&simulation, block), Within(exact, 0.02));
+    }
 }
 
 /// Places of pressure across a base, along each axis.

@@ -145,6 +145,24 @@ impl Base {
     }
 }
 
+/// A block and all that rests on it alone, of these bases; none where something rests on them and on other blocks.
+pub fn with_all_on_it(bases: &[(BlockId, Base)], first: BlockId) -> Option<Vec<BlockId>> {
+    let mut stack = vec![first];
+    let on_it = |stack: &[BlockId], base: &Base| base.on.iter().filter(|on| stack.contains(on)).count();
+    loop {
+        let rests = |(block, base): &&(BlockId, Base)| {
+            !base.on.is_empty() && on_it(&stack, base) == base.on.len() && !stack.contains(block)
+        };
+        let more: Vec<BlockId> = bases.iter().filter(rests).map(|(block, _)| *block).collect();
+        if more.is_empty() {
+            break;
+        }
+        stack.extend(more);
+    }
+    let leans = |(block, base): &(BlockId, Base)| !stack.contains(block) && on_it(&stack, base) > 0;
+    (!bases.iter().any(leans)).then_some(stack)
+}
+
 /// The convex hull, counter-clockwise.
 fn hull(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     points.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));

@@ -10,9 +10,9 @@ use ndda_io::scene::{Contact, Force, Potential, Scene, matches};
 use ndda_mesh::{BlockId, Vec3};
 use ndda_solver::{BodyKind, Simulation};
 
-use crate::base_of_block::{Base, Pull};
+use crate::base_of_block::{Base, Pull, with_all_on_it};
 use crate::build;
-use crate::numbers::length;
+use crate::numbers::{counted, length};
 
 /// Part of d that the force may move by, and M at which it does.
 pub const MOST_MOVED: f64 = 0.06;
@@ -26,11 +26,13 @@ const MOST_BLOCKS: usize = 100;
 /// Factor on the penalty beyond which none is advised.
 const MOST_RAISED: f64 = 1e6;
 
-/// A block whose weight acts near the edge of its base.
+/// A block whose weight, with that of all that rests on it, acts near the edge of its base.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lean {
     /// Its name.
     pub block: String,
+    /// Blocks that rest on it.
+    pub blocks_on_it: usize,
     /// d [m].
     pub inside_m: f64,
     /// M.
@@ -48,11 +50,15 @@ impl Lean {
 
 impl fmt::Display for Lean {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let Self { block, inside_m, m, penalty_pa } = self;
+        let Self { block, blocks_on_it, inside_m, m, penalty_pa } = self;
         let inside = length(*inside_m);
+        let (on_it, them) = match blocks_on_it {
+            0 => (String::new(), "it"),
+            on_it => (format!(" and of {} on it", counted(*on_it, "block", "blocks")), "them"),
+        };
         write!(
             f,
-            "the weight of block `{block}`, with the forces on it, acts {inside} inside the edge of its base, and contact is too soft there: "
+            "the weight of block `{block}`{on_it}, with the forces on {them}, acts {inside} inside the edge of its base, and contact is too soft there: "
         )?;
         match *m < FALLS {
             true => write!(
@@ -97,9 +103,12 @@ pub fn worst(scene: &Scene, simulation: &Simulation) -> Option<Lean> {
     if gravity == Vec3::zeros() || free.len() > MOST_BLOCKS {
         return None;
     }
-    let lean = |block: BlockId| {
-        let base = Base::of(simulation, block, &gravity)?;
-        let pressed = pulls(scene, simulation, block).into_iter().filter_map(|pulls| base.pressed(&pulls));
+    let bases: Vec<(BlockId, Base)> =
+        free.into_iter().filter_map(|block| Some((block, Base::of(simulation, block, &gravity)?))).collect();
+    let lean = |(block, base): &(BlockId, Base)| {
+        // What bridges several blocks is left out: how it divides its weight among them is not known.
+        let stack = with_all_on_it(&bases, *block).unwrap_or_else(|| vec![*block]);
+        let pressed = pulls(scene, simulation, &stack).into_iter().filter_map(|pulls| base.pressed(&pulls));
         let (m, inside_m) = pressed
             .map(|p| {
                 let m =
@@ -108,27 +117,32 @@ pub fn worst(scene: &Scene, simulation: &Simulation) -> Option<Lean> {
             })
             .max_by(|a, b| a.0.total_cmp(&b.0))?;
         let block = simulation.blocks().names[block.index()].clone();
-        (m > MOST).then(|| Lean { block, inside_m, m, penalty_pa: penalty_pa * m / ADVISED })
+        let (blocks_on_it, penalty_pa) = (stack.len() - 1, penalty_pa * m / ADVISED);
+        (m > MOST).then_some(Lean { block, blocks_on_it, inside_m, m, penalty_pa })
     };
-    free.into_iter().filter_map(lean).max_by(|a, b| a.m.total_cmp(&b.m))
+    bases.iter().filter_map(lean).max_by(|a, b| a.m.total_cmp(&b.m))
 }
 
-/// The weight and the forces of the scene on a block, at the start and at each row of their tables.
-fn pulls(scene: &Scene, simulation: &Simulation, block: BlockId) -> Vec<Vec<Pull>> {
+/// The weights and the forces of the scene on blocks, at the start and at each row of the tables of these.
+fn pulls(scene: &Scene, simulation: &Simulation, stack: &[BlockId]) -> Vec<Vec<Pull>> {
     let blocks = simulation.blocks();
-    let shape = simulation.shape(block);
-    let centre = shape.operator.center(&simulation.start_position()[blocks.nodes_of(block)]);
-    let weight = (centre, shape.operator.mass_kg * Vec3::from(scene.gravity_m_s2));
-    let name = &blocks.names[block.index()];
-    let forces: Vec<_> = scene.forces.iter().filter(|force| matches(&force.block, name)).collect();
-    let rows = forces.iter().flat_map(|force| force.factor.iter().map(|row| row.time_s));
+    let gravity = Vec3::from(scene.gravity_m_s2);
+    let (mut weights, mut forces) = (Vec::new(), Vec::new());
+    for &block in stack {
+        let (shape, name) = (simulation.shape(block), &blocks.names[block.index()]);
+        let centre = shape.operator.center(&simulation.start_position()[blocks.nodes_of(block)]);
+        weights.push((centre, shape.operator.mass_kg * gravity));
+        let on_it = scene.forces.iter().filter(|force| matches(&force.block, name));
+        forces.extend(on_it.map(|force| (centre, force)));
+    }
+    let rows = forces.iter().flat_map(|(_, force)| force.factor.iter().map(|row| row.time_s));
     let at = |time_s: f64| {
-        let pull = |force: &&Force| {
-            let place = force.at_m.map_or(centre, |at_m| Vec3::from(at_m) - blocks.origin_m);
+        let pull = |(centre, force): &(Vec3, &Force)| {
+            let place = force.at_m.map_or(*centre, |at_m| Vec3::from(at_m) - blocks.origin_m);
             let factor = build::table(&force.factor).map_or(1.0, |table| table.at(time_s));
             (place, factor * Vec3::from(force.force_n))
         };
-        std::iter::once(weight).chain(forces.iter().map(pull)).collect()
+        weights.iter().copied().chain(forces.iter().map(pull)).collect()
     };
     std::iter::once(0.0).chain(rows).map(at).collect()
 }
@@ -138,19 +152,29 @@ mod tests {
     use super::*;
     use crate::Model;
 
-    /// A column of 1 × 1 × 4 m, its lower corner so far from that of a floor, under gravity with a level part, and with forces.
-    fn pushed(penalty_pa: f64, level_m_s2: f64, at_x_m: f64, forces: &str) -> Option<Lean> {
-        let text = format!(
+    /// Blocks on a floor, under gravity with a level part, and with forces.
+    fn text(penalty_pa: f64, level_m_s2: f64, blocks: &str, forces: &str) -> String {
+        format!(
             "(title: \"t\", time: (step_s: 1e-3, end_s: 1), gravity_m_s2: ({level_m_s2}, 0, -9.81),
              materials: [(name: \"rock\", young_pa: 2e10, poisson: 0.25, density_kg_m3: 2500)],
-             blocks: [(name: \"floor\", material: \"rock\", body: Fixed, shape: Box(size_m: (4, 3, 1), cells: (2, 1, 1)), at_m: (-2, -1, -1)),
-                 (name: \"column\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 4), cells: (1, 1, 1)), at_m: ({at_x_m}, 0, 0))],
+             blocks: [(name: \"floor\", material: \"rock\", body: Fixed, shape: Box(size_m: (4, 3, 1), cells: (2, 1, 1)), at_m: (-2, -1, -1)), {blocks}],
              forces: [{forces}],
              contact: Potential(penalty_pa: {penalty_pa}, potential: Smooth(reference_m: 1), friction: (friction_deg: 60)))"
-        );
-        let loaded = ndda_io::read::load_text("t.ron", &text, &[], None).unwrap();
+        )
+    }
+
+    fn leaning(text: &str) -> Option<Lean> {
+        let loaded = ndda_io::read::load_text("t.ron", text, &[], None).unwrap();
         let scene = loaded.scene.clone();
         worst(&scene, &Model::new(loaded, std::path::Path::new(".")).unwrap().simulation)
+    }
+
+    /// A column of 1 × 1 × 4 m, its lower corner so far from that of a floor.
+    fn pushed(penalty_pa: f64, level_m_s2: f64, at_x_m: f64, forces: &str) -> Option<Lean> {
+        let column = format!(
+            "(name: \"column\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 4), cells: (1, 1, 1)), at_m: ({at_x_m}, 0, 0))"
+        );
+        leaning(&text(penalty_pa, level_m_s2, &column, forces))
     }
 
     fn found(penalty_pa: f64, level_m_s2: f64, at_x_m: f64) -> Option<Lean> {
@@ -198,6 +222,38 @@ mod tests {
             (high.inside_m - 0.1).abs() < 1e-9 && (high.m / exact - 1.0).abs() < 1e-9,
             "{high:?}, {exact}"
         );
+    }
+
+    /// A joint across a column changes nothing: its lower part bears all of the weight.
+    #[test]
+    fn blocks_that_rest_on_a_block_count_with_it() {
+        let column = "(name: \"column\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 4), cells: (1, 1, 1)), at_m: (0, 0, 0))";
+        let drum = |k: usize| {
+            format!(
+                "(name: \"drum_{k}\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), at_m: (0, 0, {k}))"
+            )
+        };
+        let drums = [0, 1, 2, 3].map(drum).join(", ");
+        // Gravity alone, and with a force on the uppermost one.
+        for (level_m_s2, force) in [
+            (0.2 * 9.81, String::new()),
+            (
+                0.0,
+                format!(
+                    "(block: \"NAME\", at_m: (0.5, 0.5, 3.5), force_n: ({}, 0, 0))",
+                    2500.0 * 4.0 * 0.2 * 9.81 * 2.0 / 3.5
+                ),
+            ),
+        ] {
+            let [whole, parted] = [(column, "column"), (drums.as_str(), "drum_3")].map(|(blocks, name)| {
+                let text = text(2e8, level_m_s2, blocks, &force.replace("NAME", name));
+                leaning(&text).unwrap()
+            });
+            assert_eq!((parted.block.as_str(), parted.blocks_on_it), ("drum_0", 3));
+            assert!((parted.m / whole.m - 1.0).abs() < 1e-9, "{parted:?}, {whole:?}");
+            let words = "the weight of block `drum_0` and of 3 blocks on it, with the forces on them, acts 100.0 mm inside";
+            assert!(parted.to_string().starts_with(words), "{parted}");
+        }
     }
 
     #[test]

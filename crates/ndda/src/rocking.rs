@@ -13,7 +13,7 @@ use ndda_mesh::{BlockId, Vec3};
 use ndda_solver::{BodyKind, Simulation};
 use serde::Serialize;
 
-use crate::base_of_block::Base;
+use crate::base_of_block::{Base, with_all_on_it};
 use crate::numbers::counted;
 
 /// Part of the acceleration that penetration may take.
@@ -49,13 +49,23 @@ pub struct Rocking {
 impl Rocking {
     /// Part of the acceleration that penetration takes.
     pub fn lost(&self) -> f64 {
-        1.0 - self.rocks_at_m_s2 / self.rigid_m_s2
+        lost([self.rocks_at_m_s2, self.rigid_m_s2])
     }
 
     /// Whether the base shakes it enough for penetration to decide, by too much.
     pub fn is_doubtful(&self) -> bool {
-        self.peak_m_s2 > self.rocks_at_m_s2 && self.lost() > MOST_LOST
+        are_doubtful([self.rocks_at_m_s2, self.rigid_m_s2], self.peak_m_s2)
     }
+}
+
+/// Part that penetration takes of the acceleration at which a block rocks; the second is on an edge that does not give way.
+fn lost([rocks_at_m_s2, rigid_m_s2]: [f64; 2]) -> f64 {
+    1.0 - rocks_at_m_s2 / rigid_m_s2
+}
+
+/// Whether a base that is shaken this much reaches the first, and penetration takes too much of it.
+fn are_doubtful(at: [f64; 2], peak_m_s2: f64) -> bool {
+    peak_m_s2 > at[0] && lost(at) > MOST_LOST
 }
 
 impl fmt::Display for Rocking {
@@ -76,7 +86,8 @@ impl fmt::Display for Rocking {
     }
 }
 
-/// The block that loses most on a shaken base; none where no base is shaken by a record, without gravity, and of potentials other than `Smooth`.
+/// Of the blocks on a shaken base that rock too early, and by too much, the one that loses most; where none does, the one that rocks first. None where no base is
+/// shaken by a record, without gravity, and of potentials other than `Smooth`.
 pub fn worst(scene: &Scene, simulation: &Simulation) -> Option<Rocking> {
     let Some(Contact::Potential { penalty_pa, potential: Potential::Smooth { reference_m }, .. }) =
         scene.contact
@@ -103,8 +114,15 @@ pub fn worst(scene: &Scene, simulation: &Simulation) -> Option<Rocking> {
         });
         thresholds.into_iter().flatten()
     });
-    let lost = |at: [f64; 2]| 1.0 - at[0] / at[1];
-    let (stack, along, at, block) = found.max_by(|a, b| lost(a.2).total_cmp(&lost(b.2)))?;
+    let peak_m_s2 = peak.norm();
+    let rank = |at: [f64; 2]| match are_doubtful(at, peak_m_s2) {
+        true => (1, lost(at)),
+        false => (0, -at[0]),
+    };
+    let (stack, along, at, block) = found.max_by(|a, b| {
+        let (a, b) = (rank(a.2), rank(b.2));
+        a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
+    })?;
     let is_enough = |penalty_pa: f64| {
         stack.threshold(&along, soft_per_m(penalty_pa)).is_some_and(|soft| lost([soft, at[1]]) <= ADVISED)
     };
@@ -112,7 +130,7 @@ pub fn worst(scene: &Scene, simulation: &Simulation) -> Option<Rocking> {
     Some(Rocking {
         block: blocks.names[block.index()].clone(),
         blocks_on_it: stack.masses.len() - 1,
-        peak_m_s2: peak.norm(),
+        peak_m_s2,
         rocks_at_m_s2: at[0],
         rigid_m_s2: at[1],
         advised_penalty_pa,
@@ -158,24 +176,7 @@ impl<'a> Stack<'a> {
         base: &'a Base,
         gravity: &'a Vec3,
     ) -> Option<Self> {
-        let mut stack = vec![first];
-        let mut grows = true;
-        while grows {
-            grows = false;
-            for (block, base) in bases.iter().filter(|(_, base)| !base.on.is_empty()) {
-                let on_it = base.on.iter().filter(|on| stack.contains(on)).count();
-                if on_it == base.on.len() && !stack.contains(block) {
-                    stack.push(*block);
-                    grows = true;
-                }
-            }
-        }
-        let leans = |(block, base): &(BlockId, Base)| {
-            !stack.contains(block) && base.on.iter().any(|on| stack.contains(on))
-        };
-        if bases.iter().any(leans) {
-            return None;
-        }
+        let stack = with_all_on_it(bases, first)?;
         let mass = |block: &BlockId| {
             let (operator, nodes) =
                 (&simulation.shape(*block).operator, simulation.blocks().nodes_of(*block));
@@ -266,6 +267,12 @@ mod tests {
 
     /// Cubes of 1 m on each other on a base that follows a record of 3 m/s².
     fn shaken(cubes: usize) -> Option<Rocking> {
+        shaken_on_a_slope(cubes, 0.0)
+    }
+
+    /// The same under gravity that is inclined, as on a slope that falls along x.
+    fn shaken_on_a_slope(cubes: usize, slope_deg: f64) -> Option<Rocking> {
+        let (down_x, down_z) = (10.0 * slope_deg.to_radians().sin(), 10.0 * slope_deg.to_radians().cos());
         // Tests run side by side.
         let (process, thread) = (std::process::id(), std::thread::current().id());
         let record = std::env::temp_dir().join(format!("ndda_rocking_{process}_{thread:?}.csv"));
@@ -277,7 +284,7 @@ mod tests {
         };
         let cubes: Vec<String> = (0..cubes).map(cube).collect();
         let text = format!(
-            "(title: \"t\", time: (step_s: 1e-3, end_s: 1.5), gravity_m_s2: (0, 0, -10),
+            "(title: \"t\", time: (step_s: 1e-3, end_s: 1.5), gravity_m_s2: ({down_x}, 0, -{down_z}),
              materials: [(name: \"rock\", young_pa: 2e10, poisson: 0.25, density_kg_m3: 2500)],
              blocks: [(name: \"base\", material: \"rock\", body: Fixed, shape: Box(size_m: (4, 3, 1), cells: (2, 1, 1)), at_m: (-2, -1, -1)), {}],
              supports: [(block: \"base\", on: All, hold: Shaking([(direction: (1, 0, 0), record: (file: {record:?}))]))],
@@ -310,6 +317,19 @@ mod tests {
             let advised_pa = PENALTY_PA * ((1.0 - soft / rigid) / ADVISED).powi(3).max(1.0);
             assert!((found.advised_penalty_pa / advised_pa).log10().abs() < 5e-3, "{found:?}, {advised_pa}");
         }
+    }
+
+    /// Down a slope of 31° a cube rocks from g tan(45° − 31°) = 2.49 m/s² on, which the base exceeds; up it from g tan(45° + 31°) = 40 m/s², of which penetration
+    /// takes more, but which no base reaches.
+    #[test]
+    fn a_direction_in_which_it_rocks_only_far_above_the_peak_hides_none_in_which_it_does() {
+        let found = shaken_on_a_slope(1, 31.0).unwrap();
+        assert!((found.rigid_m_s2 / (10.0 * 14f64.to_radians().tan()) - 1.0).abs() < 1e-9, "{found:?}");
+        assert!(found.is_doubtful(), "{found:?}");
+        // Where it rocks in neither, the one is named that comes first.
+        let found = shaken_on_a_slope(1, 10.0).unwrap();
+        assert!((found.rigid_m_s2 / (10.0 * 35f64.to_radians().tan()) - 1.0).abs() < 1e-9, "{found:?}");
+        assert!(!found.is_doubtful(), "{found:?}");
     }
 
     #[test]
