@@ -1,4 +1,4 @@
-"""Writes synthetic.at2, a record of ground motion for the scenes of this folder: python3 scenes/works/make_record.py
+"""Writes a record of ground motion, synthetic.at2 for the scenes of this folder and record.at2 for a template: python3 scenes/works/make_record.py
 
 A sum of 120 sines of random phase (seed 7) with frequencies from 0.4 to 12 Hz and amplitudes of Brune's spectrum f²/(1 + (f/1.2 Hz)²), under the envelope
 t² exp(-t) to 8 s, scaled to a peak of 0.35 g. It is no record of an earthquake.
@@ -25,4 +25,6 @@ lines = [
 ]
 for i in range(0, COUNT, 5):
     lines.append("".join(f"{v:15.7E}" for v in values[i : i + 5]))
-pathlib.Path(__file__).with_name("synthetic.at2").write_text("\n".join(lines) + "\n")
+here = pathlib.Path(__file__).resolve().parent
+for file in (here / "synthetic.at2", here.parents[1] / "crates/ndda/templates/record.at2"):
+    file.write_text("\n".join(lines) + "\n", encoding="utf-8")

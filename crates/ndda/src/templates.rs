@@ -56,10 +56,18 @@ const fn template(name: &'static str, about: &'static str, scene: &'static str) 
 }
 
 /// All templates; the first is the default.
-pub const TEMPLATES: [Template; 10] = [
+pub const TEMPLATES: [Template; 11] = [
     template("slide", "a block on a slope, with friction", include_str!("../templates/slide.ron")),
     template("collide", "two blocks that meet in flight", include_str!("../templates/collide.ron")),
     template("topple", "a slender block on a base that is shaken", include_str!("../templates/topple.ron")),
+    Template {
+        files: &[("record.at2", include_str!("../templates/record.at2"))],
+        ..template(
+            "earthquake",
+            "a block on a slope under a recorded earthquake",
+            include_str!("../templates/earthquake.ron"),
+        )
+    },
     template("slope", "a slope in two joint sets", include_str!("../templates/slope.ron")),
     template("wedge", "a wedge between two joints and a face", include_str!("../templates/wedge.ron")),
     template("tunnel", "a wedge in the roof of a tunnel", include_str!("../templates/tunnel.ron")),
