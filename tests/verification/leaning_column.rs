@@ -107,6 +107,37 @@ fn a_column_leans_by_what_contact_gives_way_at_its_edge() {
     }
 }
 
+/// The column under gravity that is tilted so that its weight acts 0.1 m from the middle of its base, with the penalty for R; also that penalty, N and the arm.
+fn column_in_the_middle(r: f64) -> (Simulation, [f64; 3]) {
+    let level = 0.1 / (0.5 * HEIGHT_M);
+    let secant = level.hypot(1.0);
+    let (normal_n, arm_m) = (DENSITY * G * HEIGHT_M * WIDTH_M / secant, 0.5 * HEIGHT_M * secant * secant);
+    let penalty_pa = 6.0 * normal_n * arm_m / (r * WIDTH_M.powi(3));
+    let simulation = column_under(1, [G * level / secant, -G / secant], "", penalty_pa);
+    (simulation, [penalty_pa, normal_n, arm_m])
+}
+
+/// The side that goes deepest, by d, presses by k_n d²/2 on the floor, and its friction of 60° resists the tilt by the moment of half of the width at most.
+#[test]
+fn a_column_whose_weight_acts_in_the_middle_third_leans_by_the_tilt_of_its_whole_base() {
+    for r in [0.1, 0.3] {
+        let (mut simulation, [penalty_pa, normal_n, arm_m]) = column_in_the_middle(r);
+        simulation.settle(&Settle::new(1e-6, 100_000)).unwrap();
+        let exact = r / (1.0 - r) * 0.1 / arm_m;
+        let deepest_m = 0.5 * normal_n / penalty_pa + 0.5 * WIDTH_M * exact;
+        let held_n_m = 3_f64.sqrt() * 0.5 * penalty_pa * deepest_m.powi(2) * 0.5 * WIDTH_M;
+        let bound = held_n_m / (normal_n * 0.1);
+        let name = format!("tilt with the weight in the middle third, R = {r} [rad]");
+        row("leaning column", &name, tilt(&simulation, 1), Within(exact, bound));
+    }
+    let (mut simulation, _) = column_in_the_middle(0.6);
+    let settled = simulation.settle(&Settle::new(1e-6, 20_000));
+    assert!(settled.is_err(), "{settled:?}");
+    // Its weight has passed the edge.
+    let over = 0.4 / (0.5 * HEIGHT_M);
+    row("leaning column", "the same at R = 0.6 [rad]", tilt(&simulation, 1).abs(), AtLeast(over));
+}
+
 #[test]
 fn beyond_four_parts_of_27_it_falls_although_its_weight_acts_inside_the_edge() {
     let mut simulation = column(1.25 * MOST);

@@ -28,7 +28,7 @@ pub struct Base {
     pub on: Vec<BlockId>,
 }
 
-/// The resultant force on a base near an edge.
+/// The resultant force on a base, and the edge that it is nearest to.
 pub struct Pressed {
     /// Part of the force across the base [N].
     pub normal_n: f64,
@@ -36,6 +36,8 @@ pub struct Pressed {
     pub inside_m: f64,
     /// w [m].
     pub width_m: f64,
+    /// Depth of the base across the edge [m].
+    pub across_m: f64,
     /// How far the line of the force moves towards the edge for a tilt of one radian [m].
     pub arm_m: f64,
 }
@@ -104,7 +106,7 @@ impl Base {
         Some(Self { points: hull(points), origin, axes, on })
     }
 
-    /// The force on the base and the distance of its line from the nearest edge; none where they pull, where their line meets it outside, or where the strip at the edge is all of it.
+    /// The force on the base and the distance of its line from the nearest edge; none where they pull, or where their line meets it outside.
     ///
     /// With heights h_i, places s_i, normal parts N_i and tangential parts T_i of the forces, the line meets the base at Σ (N_i s_i + h_i T_i)/N.
     /// A tilt of one radian about the edge with the outward direction e there moves that along e by Σ (N_i h_i − (s_i·e)(T_i·e))/N.
@@ -118,16 +120,15 @@ impl Base {
             })
         };
         let foot = parts().map(|(s, h, n, t)| n * s + h * t).sum::<Vec3>() / normal_n;
-        let (inside_m, along, width_m) = self.inside(&foot)?;
+        let (inside_m, along, [width_m, across_m]) = self.inside(&foot)?;
         let out = Vec3::new(along.y, -along.x, 0.0);
         let arm = |(s, h, n, t): (Vec3, f64, f64, Vec3)| n * h - (s - foot).dot(&out) * t.dot(&out);
         let arm_m = parts().map(arm).sum::<f64>() / normal_n;
-        (normal_n > 0.0 && arm_m > 0.0).then_some(Pressed { normal_n, inside_m, width_m, arm_m })
+        (normal_n > 0.0 && arm_m > 0.0).then_some(Pressed { normal_n, inside_m, width_m, across_m, arm_m })
     }
 
-    /// Distance of a foot from the nearest edge, the direction of that and the width of the base along it [m]; none where it lies outside, or the strip at the edge
-    /// is all of the base.
-    fn inside(&self, foot: &Vec3) -> Option<(f64, Vec3, f64)> {
+    /// Distance of a foot from the nearest edge, the direction of that, and the extents of the base along and across it [m]; none where it lies outside.
+    fn inside(&self, foot: &Vec3) -> Option<(f64, Vec3, [f64; 2])> {
         let corners = &self.points;
         let edges = (0..corners.len()).map(|k| (corners[k], corners[(k + 1) % corners.len()]));
         let distance = |(a, b): ([f64; 2], [f64; 2])| {
@@ -140,8 +141,8 @@ impl Base {
             places.clone().fold(f64::MIN, f64::max) - places.fold(f64::MAX, f64::min)
         };
         let (width_m, across_m) = (extent(along), extent(Vec3::new(-along.y, along.x, 0.0)));
-        (corners.len() > 2 && inside_m > AT_THE_EDGE * across_m && 3.0 * inside_m < across_m)
-            .then_some((inside_m, along, width_m))
+        let is_inside = corners.len() > 2 && inside_m > AT_THE_EDGE * across_m;
+        is_inside.then_some((inside_m, along, [width_m, across_m]))
     }
 }
 

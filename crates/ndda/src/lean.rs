@@ -3,6 +3,9 @@
 //! A force N whose line meets the base d inside an edge presses on a strip of 3 d. With the width w of the base along the edge, the tilt takes the
 //! part 1 − x of d, x² (1 − x) = M, M = N h L₀/(9 k_n w d³). h is how far the line moves towards the edge by the tilt: h_c/cos²α for a weight whose
 //! mass centre is h_c above a base that dips by α. Beyond M = 4/27 there is no such x, and the block falls, although a rigid edge would hold it.
+//!
+//! Where the line meets the base in its middle third, B deep across the edge, all of the base bears. The distance e of the line from the middle grows to
+//! e/(1 − R), R = 6 N h L₀/(k_n w B³) = 54 M d³/B³, as long as that is within the third.
 
 use std::fmt;
 
@@ -10,13 +13,12 @@ use ndda_io::scene::{Contact, Force, Potential, Scene, matches};
 use ndda_mesh::{BlockId, Vec3};
 use ndda_solver::{BodyKind, Simulation};
 
-use crate::base_of_block::{Base, Pull, with_all_on_it};
+use crate::base_of_block::{Base, Pressed, Pull, with_all_on_it};
 use crate::build;
 use crate::numbers::{counted, length};
 
-/// Part of d that the force may move by, and M at which it does.
+/// Part of d that the force may move by.
 pub const MOST_MOVED: f64 = 0.06;
-const MOST: f64 = (1.0 - MOST_MOVED) * (1.0 - MOST_MOVED) * MOST_MOVED;
 /// M from which on it falls.
 const FALLS: f64 = 4.0 / 27.0;
 /// M with the penalty that is advised.
@@ -37,20 +39,15 @@ pub struct Lean {
     pub inside_m: f64,
     /// M.
     pub m: f64,
+    /// Part of d that the force moves by: all of it where the block falls.
+    pub moved: f64,
     /// Penalty with which it hardly leans [Pa].
     pub penalty_pa: f64,
 }
 
-impl Lean {
-    /// Part of d that the force moves by: all of it where the block falls.
-    pub fn moved(&self) -> f64 {
-        if self.m < FALLS { 1.0 - left(self.m) } else { 1.0 }
-    }
-}
-
 impl fmt::Display for Lean {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let Self { block, blocks_on_it, inside_m, m, penalty_pa } = self;
+        let Self { block, blocks_on_it, inside_m, m, moved, penalty_pa } = self;
         let inside = length(*inside_m);
         let (on_it, them) = match blocks_on_it {
             0 => (String::new(), "it"),
@@ -60,11 +57,11 @@ impl fmt::Display for Lean {
             f,
             "the weight of block `{block}`{on_it}, with the forces on {them}, acts {inside} inside the edge of its base, and contact is too soft there: "
         )?;
-        match *m < FALLS {
+        match *moved < 1.0 {
             true => write!(
                 f,
                 "the block leans, and that force moves {:.0} % of the way to the edge, limit {:.0} %",
-                100.0 * self.moved(),
+                100.0 * moved,
                 100.0 * MOST_MOVED
             )?,
             false => write!(f, "the block falls, although a rigid edge would hold it")?,
@@ -74,6 +71,16 @@ impl fmt::Display for Lean {
             false => write!(f, ", but so close to the edge that no penalty decides whether it stands"),
         }
     }
+}
+
+/// Part of d that a force moves by, and M; all of d where the block falls.
+fn moved(Pressed { normal_n, inside_m, width_m, across_m, arm_m }: Pressed, soft_m_pa: f64) -> (f64, f64) {
+    let m = normal_n * arm_m * soft_m_pa / (9.0 * width_m * inside_m.powi(3));
+    let (r, eccentric_m) = (54.0 * m * (inside_m / across_m).powi(3), 0.5 * across_m - inside_m);
+    if 6.0 * eccentric_m < (1.0 - r) * across_m {
+        return (r * eccentric_m / ((1.0 - r) * inside_m), m);
+    }
+    (if m < FALLS { 1.0 - left(m) } else { 1.0 }, m)
 }
 
 /// x: the part of d that is left.
@@ -86,7 +93,8 @@ fn left(m: f64) -> f64 {
     low
 }
 
-/// The free block of largest M at the start; none without gravity, of potentials other than `Smooth`, or where all M are below [`MOST`].
+/// The free block whose force moves by the largest part at the start; none without gravity, of potentials other than `Smooth`, or where none moves by more than
+/// [`MOST_MOVED`].
 pub fn worst(scene: &Scene, simulation: &Simulation) -> Option<Lean> {
     let Some(Contact::Potential { penalty_pa, potential: Potential::Smooth { reference_m }, .. }) =
         scene.contact
@@ -109,18 +117,14 @@ pub fn worst(scene: &Scene, simulation: &Simulation) -> Option<Lean> {
         // What bridges several blocks is left out: how it divides its weight among them is not known.
         let stack = with_all_on_it(&bases, *block).unwrap_or_else(|| vec![*block]);
         let pressed = pulls(scene, simulation, &stack).into_iter().filter_map(|pulls| base.pressed(&pulls));
-        let (m, inside_m) = pressed
-            .map(|p| {
-                let m =
-                    p.normal_n * p.arm_m * reference_m / (9.0 * penalty_pa * p.width_m * p.inside_m.powi(3));
-                (m, p.inside_m)
-            })
-            .max_by(|a, b| a.0.total_cmp(&b.0))?;
+        let (inside_m, (moved, m)) = pressed
+            .map(|pressed| (pressed.inside_m, moved(pressed, reference_m / penalty_pa)))
+            .max_by(|(_, a), (_, b)| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)))?;
         let block = simulation.blocks().names[block.index()].clone();
         let (blocks_on_it, penalty_pa) = (stack.len() - 1, penalty_pa * m / ADVISED);
-        (m > MOST).then_some(Lean { block, blocks_on_it, inside_m, m, penalty_pa })
+        (moved > MOST_MOVED).then_some(Lean { block, blocks_on_it, inside_m, m, moved, penalty_pa })
     };
-    bases.iter().filter_map(lean).max_by(|a, b| a.m.total_cmp(&b.m))
+    bases.iter().filter_map(lean).max_by(|a, b| a.moved.total_cmp(&b.moved).then(a.m.total_cmp(&b.m)))
 }
 
 /// The weights and the forces of the scene on blocks, at the start and at each row of the tables of these.
@@ -192,7 +196,11 @@ mod tests {
         );
         assert!(lean.to_string().contains("100.0 mm inside the edge"), "{lean}");
         assert_eq!(found(1e10, 0.2 * 9.81, 0.0), None, "contact is stiff");
-        assert_eq!(found(2e8, 0.0, 0.0), None, "its weight acts in the middle");
+        assert_eq!(
+            found(2e8, 0.0, 0.0),
+            None,
+            "its weight acts in the middle of a base that is stiff enough"
+        );
         assert_eq!(found(2e8, 0.3 * 9.81, 0.0), None, "its weight acts beyond the edge, so that it topples");
     }
 
@@ -222,6 +230,24 @@ mod tests {
             (high.inside_m - 0.1).abs() < 1e-9 && (high.m / exact - 1.0).abs() < 1e-9,
             "{high:?}, {exact}"
         );
+    }
+
+    /// Gravity that is tilted by 0.05 moves the foot by 0.1 m of the middle: R = 0.3 takes it 0.0429 m on, of 0.4 m to the edge; beyond R = 0.511 it falls. Upright, R = 1 decides.
+    #[test]
+    fn a_weight_in_the_middle_third_counts_by_the_tilt_of_the_whole_base() {
+        let at = |r: f64, level: f64| {
+            let weight_n = 2500.0 * 4.0 * 9.81;
+            found(6.0 * weight_n * 2.0 * (1.0 + level * level) / r, level * 9.81, 0.0)
+        };
+        let lean = at(0.3, 0.05).unwrap();
+        assert!(
+            (lean.inside_m - 0.4).abs() < 1e-9 && (lean.moved - 0.3 / 0.7 * 0.1 / 0.4).abs() < 1e-9,
+            "{lean:?}"
+        );
+        assert!(at(0.51, 0.05).unwrap().moved < 1.0 && at(0.512, 0.05).unwrap().moved == 1.0);
+        assert!(at(0.99, 0.0).is_none() && at(1.01, 0.0).unwrap().moved == 1.0);
+        let advised = found(lean.penalty_pa, 0.05 * 9.81, 0.0);
+        assert!(advised.is_none(), "{advised:?}");
     }
 
     /// A joint across a column changes nothing: its lower part bears all of the weight.

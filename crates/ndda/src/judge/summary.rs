@@ -116,7 +116,7 @@ pub fn summarise(simulation: &Simulation, recorder: &Recorder, ending: Ending) -
 fn at_the_start(scene: &Scene, simulation: &Simulation) -> Vec<Finding> {
     let lean = lean::worst(scene, simulation).map(|lean| Finding {
         what: "shift of a weight towards an edge / its distance",
-        value: lean.moved(),
+        value: lean.moved,
         limit: lean::MOST_MOVED,
         reason: lean.to_string(),
     });
