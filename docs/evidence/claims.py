@@ -300,7 +300,7 @@ def source_value(source, rows):
         return float(cells.pop())
     if kind == "csv":
         file, conditions, column = rest.split(": ")
-        wanted = dict(part.split("=", 1) for part in conditions.split(", "))
+        wanted = dict(part.split("=", 1) for part in re.split(r", (?=[^,=]*[^,= ]=)", conditions))
         with (ROOT / file).open(encoding="utf-8", newline="") as opened:
             hits = [row for row in csv.DictReader(opened) if all(row[key] == text for key, text in wanted.items())]
         if len(hits) != 1:
