@@ -244,13 +244,19 @@ def ties():
 
 def span(tie, text):
     """Where the number of a tie is in the text of its page; none unless its words are there once."""
+    found = match(tie, text)
+    return found and found.span(1)
+
+
+def match(tie, text):
+    """The words of a tie in the text of its page, its number as a group; none unless they are there once."""
     if tie["page"].endswith(".ron"):
         text = re.sub(r"^[ \t]*//", lambda match: " " * len(match[0]), text, flags=re.MULTILINE)
     before, _, rest = tie["words"].partition("{")
     number, _, after = rest.partition("}")
     parts = (r"\s+".join(re.escape(word) for word in part.split(" ")) for part in (before, number, after))
     hits = list(re.finditer("{}({}){}".format(*parts), text))
-    return hits[0].span(1) if len(hits) == 1 else None
+    return hits[0] if len(hits) == 1 else None
 
 
 def place(tie):

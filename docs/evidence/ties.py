@@ -128,9 +128,14 @@ def put(row, number):
     begin, end = claims.span(row, text)
     path.write_text(text[:begin] + number + text[end:], encoding="utf-8")
     rows = claims.ties()
-    for other in rows:
-        if other["page"] == row["page"] and other["words"] == row["words"]:
-            other["words"] = re.sub(r"\{.*?\}", "{" + number + "}", row["words"])
+    for other in (other for other in rows if other["page"] == row["page"]):
+        # Other rows may have the number among their words.
+        there = claims.match(other, text)
+        if there and there.start() <= begin and end <= there.end():
+            old = text[begin:end]
+            before = text[there.start() : begin].count(old)
+            parts = other["words"].split(old)
+            other["words"] = old.join(parts[: before + 1]) + number + old.join(parts[before + 1 :])
     with claims.TIES.open("w", encoding="utf-8", newline="") as file:
         writer = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
         writer.writeheader()
