@@ -275,3 +275,32 @@ fn a_drum_leans_by_the_pressures_on_its_polygon() {
     // Of first order in the tilt, as that of the column.
     row("leaning column", "tilt of a drum on its polygon [rad]", axis.x.atan2(axis.z), Within(exact, 0.02));
 }
+
+/// A square turned by 45°, so that it leans over a corner.
+#[test]
+fn a_column_leans_over_its_corner_by_the_pressures_on_a_triangle() {
+    let (half_m, inside_m, m) = (0.5_f64.sqrt(), 0.02_f64.sqrt(), 0.05);
+    let level = (half_m - inside_m) / (0.5 * HEIGHT_M);
+    let weight_n = DENSITY * G * HEIGHT_M;
+    let penalty_pa = 3.0 * weight_n * 0.5 * HEIGHT_M * (1.0 + level * level) / (16.0 * inside_m.powi(4) * m);
+    let mut simulation = simulation(&format!(
+        "(title: \"corner\", time: (step_s: 1e-3, end_s: 1), gravity_m_s2: ({}, 0, -{G}),
+          materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: {DENSITY})],
+          blocks: [
+              (name: \"floor\", material: \"rock\", body: Fixed, shape: Box(size_m: (4, 4, 1), cells: (1, 1, 1)), at_m: (-2, -1, -1)),
+              (name: \"column\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, {HEIGHT_M}), cells: (1, 1, 1)), turns: [(axis: (0, 0, 1), angle_deg: 45)]),
+          ],
+          contact: Potential(penalty_pa: {penalty_pa:e}, potential: Smooth(reference_m: 1), friction: (friction_deg: 60)))",
+        G * level
+    ));
+    simulation.settle(&Settle::new(1e-6, 100_000)).unwrap();
+    let corners = [[half_m, 0.0], [0.0, half_m], [-half_m, 0.0], [0.0, -half_m]];
+    let exact = tilt_on(&corners, weight_n, 0.5 * HEIGHT_M, level, penalty_pa);
+    // Of first order in the tilt, as that of the column.
+    row(
+        "leaning column",
+        "tilt of a column over its corner [rad]",
+        tilt(&simulation, 1),
+        Within(exact, 0.02),
+    );
+}

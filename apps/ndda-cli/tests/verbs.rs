@@ -91,6 +91,14 @@ fn a_template_is_never_written_over_a_file() {
     assert_eq!(std::fs::read_to_string(folder.path().join("mine.ron")).unwrap(), TEMPLATES[0].scene);
     let (code, reason) = refused(folder.path(), &["new", "slid"]);
     assert!(code == 2 && reason.contains("did you mean `slide`"), "{code}: {reason}");
+    // A record of the user's beside the scene is never lost.
+    std::fs::write(folder.path().join("record.at2"), "mine").unwrap();
+    let (code, reason) = refused(folder.path(), &["new", "earthquake", "--force"]);
+    assert!(
+        code == 5 && reason.contains("record.at2 is there already, with other content"),
+        "{code}: {reason}"
+    );
+    assert_eq!(std::fs::read_to_string(folder.path().join("record.at2")).unwrap(), "mine");
     assert_eq!(said(folder.path(), &["new", "-o", "-"]), TEMPLATES[0].scene);
     assert_eq!(said(folder.path(), &["new", "--list"]).lines().count(), TEMPLATES.len());
 }

@@ -13,6 +13,9 @@ const SAME_PLANE: f64 = 1e-3;
 /// Cosine of the steepest base, against gravity.
 const STEEPEST: f64 = 0.5;
 
+/// Places of s₀, from a millionth of the depth of the base inside its edge to four depths.
+pub const PLACES: i32 = 400;
+
 /// Where a force acts [m], and the force [N].
 pub type Pull = (Vec3, Vec3);
 
@@ -42,10 +45,10 @@ pub struct Pressed {
     pub arm_m: f64,
 }
 
-/// Triangles of a block at the start, with their normals.
+/// Triangles of a block as it is drawn, with their normals: a scene that has settled is judged by what it began with, since what fell on the way lies at rest.
 fn faces(simulation: &Simulation, block: BlockId) -> impl Iterator<Item = ([Vec3; 3], Vec3)> {
     let blocks = simulation.blocks();
-    let position = simulation.start_position();
+    let position = &blocks.rest_position;
     blocks.triangles_of(block).map(move |triangle| {
         let corners = blocks.triangles[triangle].map(|node| position[node.index()]);
         (corners, triangle_area_vector(&corners))
@@ -56,7 +59,7 @@ impl Base {
     /// The lowest face of a block, where others touch that one only, or its top.
     pub fn of(simulation: &Simulation, block: BlockId, gravity: &Vec3) -> Option<Self> {
         let down = gravity.normalize();
-        let nodes = &simulation.start_position()[simulation.blocks().nodes_of(block)];
+        let nodes = &simulation.blocks().rest_position[simulation.blocks().nodes_of(block)];
         let bounds = Aabb::around(nodes);
         let near_m = SAME_PLANE * bounds.diagonal();
         let bounds = bounds.inflated(near_m);
@@ -111,20 +114,88 @@ impl Base {
     /// With heights h_i, places s_i, normal parts N_i and tangential parts T_i of the forces, the line meets the base at Σ (N_i s_i + h_i T_i)/N.
     /// A tilt of one radian about the edge with the outward direction e there moves that along e by Σ (N_i h_i − (s_i·e)(T_i·e))/N.
     pub fn pressed(&self, pulls: &[Pull]) -> Option<Pressed> {
-        let [one, two, normal] = &self.axes;
-        let flat = |v: &Vec3| Vec3::new(one.dot(v), two.dot(v), 0.0);
-        let normal_n: f64 = pulls.iter().map(|(_, f)| f.dot(normal)).sum();
-        let parts = || {
-            pulls.iter().map(|(x, f)| {
-                (flat(&(x - self.origin)), (self.origin - x).dot(normal), f.dot(normal), flat(f))
-            })
-        };
-        let foot = parts().map(|(s, h, n, t)| n * s + h * t).sum::<Vec3>() / normal_n;
+        let (normal_n, foot) = self.resultant(pulls);
         let (inside_m, along, [width_m, across_m]) = self.inside(&foot)?;
-        let out = Vec3::new(along.y, -along.x, 0.0);
-        let arm = |(s, h, n, t): (Vec3, f64, f64, Vec3)| n * h - (s - foot).dot(&out) * t.dot(&out);
-        let arm_m = parts().map(arm).sum::<f64>() / normal_n;
+        let arm_m = self.arm(pulls, (normal_n, &foot), &Vec3::new(along.y, -along.x, 0.0));
         (normal_n > 0.0 && arm_m > 0.0).then_some(Pressed { normal_n, inside_m, width_m, across_m, arm_m })
+    }
+
+    /// Part of the way from its foot to the rim, straight away from the middle of the base, that a force moves by as contact gives way, and that way [m]; all of it where
+    /// the block falls. At a corner a triangle bears, where at an edge a strip does. `soft_m_pa` is L₀/k_n.
+    pub fn moved_outwards(&self, pulls: &[Pull], soft_m_pa: f64) -> Option<(f64, f64)> {
+        let (normal_n, foot) = self.resultant(pulls);
+        self.inside(&foot)?;
+        let out = (foot - self.middle()).try_normalize(0.0)?;
+        let arm_m = self.arm(pulls, (normal_n, &foot), &out);
+        if normal_n <= 0.0 || arm_m <= 0.0 {
+            return None;
+        }
+        let places: Vec<[f64; 2]> =
+            self.points.iter().map(|[x, y]| [out.x * x + out.y * y, out.x * y - out.y * x]).collect();
+        let (least_m, most_m) =
+            places.iter().fold((f64::MAX, f64::MIN), |(a, b), [s, _]| (a.min(*s), b.max(*s)));
+        let way_m = self.way_to_rim(&foot, &out);
+        // How far it moves where pressures begin at s₀, and whether they hold it there.
+        let moved = |place: f64| {
+            let from_m = most_m - 4.0 * 10_f64.powf(-7.0 * place / f64::from(PLACES)) * (most_m - least_m);
+            let [first, second] = moments_beyond(&places, from_m);
+            let moved_m = 0.5 * soft_m_pa * normal_n * arm_m / first;
+            (moved_m / way_m, first > 0.0 && from_m + second / first >= foot.dot(&out) + moved_m)
+        };
+        let holds = (0..PLACES).map(f64::from).find(|place| moved(*place).1).map(|place| {
+            let (mut low, mut high) = ((place - 1.0).max(0.0), place);
+            for _ in 0..40 {
+                let middle = 0.5 * (low + high);
+                if moved(middle).1 { high = middle } else { low = middle }
+            }
+            moved(high).0
+        });
+        Some((holds.unwrap_or(1.0).min(1.0), way_m))
+    }
+
+    /// N, and where the line of the forces meets the base.
+    fn resultant(&self, pulls: &[Pull]) -> (f64, Vec3) {
+        let normal_n: f64 = pulls.iter().map(|(_, f)| f.dot(&self.axes[2])).sum();
+        let foot = self.parts(pulls).map(|(s, h, n, t)| n * s + h * t).sum::<Vec3>() / normal_n;
+        (normal_n, foot)
+    }
+
+    /// How far the foot moves along a direction of the base for a tilt of one radian [m].
+    fn arm(&self, pulls: &[Pull], (normal_n, foot): (f64, &Vec3), out: &Vec3) -> f64 {
+        let arm = |(s, h, n, t): (Vec3, f64, f64, Vec3)| n * h - (s - foot).dot(out) * t.dot(out);
+        self.parts(pulls).map(arm).sum::<f64>() / normal_n
+    }
+
+    /// Place along the base and height [m] of each force, and its parts across and along the base [N].
+    fn parts<'a>(&'a self, pulls: &'a [Pull]) -> impl Iterator<Item = (Vec3, f64, f64, Vec3)> + 'a {
+        let [one, two, normal] = &self.axes;
+        let flat = move |v: &Vec3| Vec3::new(one.dot(v), two.dot(v), 0.0);
+        pulls.iter().map(move |(x, f)| {
+            (flat(&(x - self.origin)), (self.origin - x).dot(normal), f.dot(normal), flat(f))
+        })
+    }
+
+    /// The middle of its area.
+    fn middle(&self) -> Vec3 {
+        let (mut sum, mut area) = (Vec3::zeros(), 0.0);
+        for k in 2..self.points.len() {
+            let [a, b, c] = [self.points[0], self.points[k - 1], self.points[k]];
+            let part = turn(&a, &b, &c);
+            area += part;
+            sum += part / 3.0 * Vec3::new(a[0] + b[0] + c[0], a[1] + b[1] + c[1], 0.0);
+        }
+        sum / area
+    }
+
+    /// From a point inside along a direction to the rim [m].
+    fn way_to_rim(&self, from: &Vec3, along: &Vec3) -> f64 {
+        let corners = &self.points;
+        let edges = (0..corners.len()).map(|k| (corners[k], corners[(k + 1) % corners.len()]));
+        let ways = edges.filter_map(|(a, b)| {
+            let outwards = along.x * (b[1] - a[1]) - along.y * (b[0] - a[0]);
+            (outwards > 0.0).then(|| turn(&a, &b, &[from.x, from.y]) / outwards)
+        });
+        ways.fold(f64::INFINITY, f64::min)
     }
 
     /// Distance of a foot from the nearest edge, the direction of that, and the extents of the base along and across it [m]; none where it lies outside.
@@ -162,6 +233,30 @@ pub fn with_all_on_it(bases: &[(BlockId, Base)], first: BlockId) -> Option<Vec<B
     }
     let leans = |(block, base): &(BlockId, Base)| !stack.contains(block) && on_it(&stack, base) > 0;
     (!bases.iter().any(leans)).then_some(stack)
+}
+
+/// ∫ σ dA and ∫ σ² dA over the part of a convex polygon where σ = s − s₀ > 0; s is the first coordinate.
+pub fn moments_beyond(polygon: &[[f64; 2]], from_m: f64) -> [f64; 2] {
+    let mut kept: Vec<[f64; 2]> = Vec::with_capacity(polygon.len() + 1);
+    for (k, p) in polygon.iter().enumerate() {
+        let q = &polygon[(k + 1) % polygon.len()];
+        let (at_p, at_q) = (p[0] - from_m, q[0] - from_m);
+        if at_p >= 0.0 {
+            kept.push([at_p, p[1]]);
+        }
+        if at_p * at_q < 0.0 {
+            kept.push([0.0, p[1] + at_p / (at_p - at_q) * (q[1] - p[1])]);
+        }
+    }
+    let mut sums = [0.0; 2];
+    for k in 2..kept.len() {
+        let [a, b, c] = [kept[0], kept[k - 1], kept[k]];
+        let area_m2 = 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])).abs();
+        let sum = a[0] + b[0] + c[0];
+        sums[0] += area_m2 * sum / 3.0;
+        sums[1] += area_m2 * (sum * sum + a[0] * a[0] + b[0] * b[0] + c[0] * c[0]) / 12.0;
+    }
+    sums
 }
 
 /// The convex hull, counter-clockwise.

@@ -16,12 +16,13 @@ use ndda_solver::{BodyKind, Simulation};
 use crate::base_of_block::{Base, Pressed, Pull, with_all_on_it};
 use crate::build;
 use crate::numbers::{counted, length};
+use crate::rocking::least_from;
 
 /// Part of d that the force may move by.
 pub const MOST_MOVED: f64 = 0.06;
 /// M from which on it falls.
 const FALLS: f64 = 4.0 / 27.0;
-/// M with the penalty that is advised.
+/// M with the penalty that is advised, and the part of d that the force moves by then.
 const ADVISED: f64 = 0.02;
 /// Most free blocks of a scene that are looked at: each is compared with all others.
 const MOST_BLOCKS: usize = 100;
@@ -60,7 +61,7 @@ impl fmt::Display for Lean {
         match *moved < 1.0 {
             true => write!(
                 f,
-                "the block leans, and that force moves {:.0} % of the way to the edge, limit {:.0} %",
+                "the block leans, and its weight moves {:.1} % of the way to the edge, limit {:.0} %",
                 100.0 * moved,
                 100.0 * MOST_MOVED
             )?,
@@ -116,10 +117,23 @@ pub fn worst(scene: &Scene, simulation: &Simulation) -> Option<Lean> {
     let lean = |(block, base): &(BlockId, Base)| {
         // What bridges several blocks is left out: how it divides its weight among them is not known.
         let stack = with_all_on_it(&bases, *block).unwrap_or_else(|| vec![*block]);
-        let pressed = pulls(scene, simulation, &stack).into_iter().filter_map(|pulls| base.pressed(&pulls));
-        let (inside_m, (moved, m)) = pressed
-            .map(|pressed| (pressed.inside_m, moved(pressed, reference_m / penalty_pa)))
-            .max_by(|(_, a), (_, b)| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)))?;
+        let soft_m_pa = reference_m / penalty_pa;
+        let leans = pulls(scene, simulation, &stack).into_iter().filter_map(|pulls| {
+            let pressed = base.pressed(&pulls)?;
+            let (inside_m, (moved, m)) = (pressed.inside_m, moved(pressed, soft_m_pa));
+            match base.moved_outwards(&pulls, soft_m_pa) {
+                Some((farther, way_m)) if farther > 1.05 * moved => {
+                    let is_enough = |penalty_pa: f64| {
+                        base.moved_outwards(&pulls, reference_m / penalty_pa)
+                            .is_some_and(|at| at.0 <= ADVISED)
+                    };
+                    Some((way_m, (farther, ADVISED * least_from(penalty_pa, is_enough) / penalty_pa)))
+                }
+                _ => Some((inside_m, (moved, m))),
+            }
+        });
+        let (inside_m, (moved, m)) =
+            leans.max_by(|(_, a), (_, b)| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)))?;
         let block = simulation.blocks().names[block.index()].clone();
         let (blocks_on_it, penalty_pa) = (stack.len() - 1, penalty_pa * m / ADVISED);
         (moved > MOST_MOVED).then_some(Lean { block, blocks_on_it, inside_m, m, moved, penalty_pa })
@@ -134,7 +148,7 @@ fn pulls(scene: &Scene, simulation: &Simulation, stack: &[BlockId]) -> Vec<Vec<P
     let (mut weights, mut forces) = (Vec::new(), Vec::new());
     for &block in stack {
         let (shape, name) = (simulation.shape(block), &blocks.names[block.index()]);
-        let centre = shape.operator.center(&simulation.start_position()[blocks.nodes_of(block)]);
+        let centre = shape.operator.center(&blocks.rest_position[blocks.nodes_of(block)]);
         weights.push((centre, shape.operator.mass_kg * gravity));
         let on_it = scene.forces.iter().filter(|force| matches(&force.block, name));
         forces.extend(on_it.map(|force| (centre, force)));
@@ -280,6 +294,39 @@ mod tests {
             let words = "the weight of block `drum_0` and of 3 blocks on it, with the forces on them, acts 100.0 mm inside";
             assert!(parted.to_string().starts_with(words), "{parted}");
         }
+    }
+
+    /// Over a corner of 90° a triangle bears: y³ (1 − y) = 3 N h L₀/(16 k_n d⁴) for the part y of d that is left, up to 27/256.
+    #[test]
+    fn over_a_corner_a_triangle_bears_and_gives_way_more() {
+        let column = "(name: \"column\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 4), cells: (1, 1, 1)), turns: [(axis: (0, 0, 1), angle_deg: 45)])";
+        let (inside_m, weight_n) = (0.02_f64.sqrt(), 2500.0 * 4.0 * 9.81);
+        let tangent = 0.5 * (0.5_f64.sqrt() - inside_m);
+        let at = |m: f64| {
+            let penalty_pa = 3.0 * weight_n * 2.0 * (1.0 + tangent * tangent) / (16.0 * inside_m.powi(4) * m);
+            leaning(&text(penalty_pa, 9.81 * tangent, column, ""))
+        };
+        let lean = at(0.08).unwrap();
+        let y = 1.0 - lean.moved;
+        assert!(
+            (lean.inside_m - inside_m).abs() < 1e-9 && (y.powi(3) * (1.0 - y) / 0.08 - 1.0).abs() < 1e-6,
+            "{lean:?}"
+        );
+        assert!(at(0.105).unwrap().moved < 0.3 && at(0.106).unwrap().moved == 1.0);
+        let advised = leaning(&text(at(0.106).unwrap().penalty_pa, 9.81 * tangent, column, ""));
+        assert!(advised.is_none(), "{advised:?}");
+    }
+
+    #[test]
+    fn a_scene_that_has_settled_is_judged_by_how_it_was_drawn() {
+        let column = "(name: \"column\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 4), cells: (1, 1, 1)), at_m: (0, 0, 0))";
+        let loaded =
+            ndda_io::read::load_text("t.ron", &text(2e8, 0.2 * 9.81, column, ""), &[], None).unwrap();
+        let scene = loaded.scene.clone();
+        let mut simulation = Model::new(loaded, std::path::Path::new(".")).unwrap().simulation;
+        let drawn = worst(&scene, &simulation);
+        simulation.settle(&ndda_solver::Settle::new(1e-6, 100_000)).unwrap();
+        assert!(drawn.is_some() && worst(&scene, &simulation) == drawn, "{drawn:?}");
     }
 
     #[test]

@@ -13,7 +13,7 @@ use ndda_mesh::{BlockId, Vec3};
 use ndda_solver::{BodyKind, Simulation};
 use serde::Serialize;
 
-use crate::base_of_block::{Base, with_all_on_it};
+use crate::base_of_block::{Base, PLACES, moments_beyond, with_all_on_it};
 use crate::numbers::counted;
 
 /// Part of the acceleration that penetration may take.
@@ -22,8 +22,6 @@ pub const MOST_LOST: f64 = 0.06;
 const ADVISED: f64 = 0.05;
 /// Most free blocks of a scene that are looked at: each is compared with all others.
 const MOST_BLOCKS: usize = 100;
-/// Places of s₀, from a millionth of the depth of the base inside its edge to four depths.
-const PLACES: i32 = 400;
 /// Decades by which the penalty may be raised.
 const MOST_DECADES: f64 = 8.0;
 /// Accelerations beyond so many g are not looked for.
@@ -105,7 +103,9 @@ pub fn worst(scene: &Scene, simulation: &Simulation) -> Option<Rocking> {
         free.into_iter().filter_map(|block| Some((block, Base::of(simulation, block, &gravity)?))).collect();
     let soft_per_m = |penalty_pa: f64| reference_m / (2.0 * penalty_pa);
     let found = bases.iter().flat_map(|(block, base)| {
-        let stack = Stack::new(simulation, &bases, *block, base, &gravity);
+        // What falls under its weight alone rocks at no acceleration.
+        let stack = Stack::new(simulation, &bases, *block, base, &gravity)
+            .filter(|stack| [peak, -peak].iter().all(|along| stack.stands(along, 0.0, 0.0)));
         let thresholds = [peak.normalize(), -peak.normalize()].map(|along| {
             let stack = stack.as_ref()?;
             let rigid_m_s2 = stack.threshold(&along, 0.0)?;
@@ -138,7 +138,7 @@ pub fn worst(scene: &Scene, simulation: &Simulation) -> Option<Rocking> {
 }
 
 /// About the least penalty from one on that is enough [Pa].
-fn least_from(penalty_pa: f64, is_enough: impl Fn(f64) -> bool) -> f64 {
+pub fn least_from(penalty_pa: f64, is_enough: impl Fn(f64) -> bool) -> f64 {
     let (mut low, mut high) = (0.0, MOST_DECADES);
     for _ in 0..12 {
         let middle = 0.5 * (low + high);
@@ -180,7 +180,7 @@ impl<'a> Stack<'a> {
         let mass = |block: &BlockId| {
             let (operator, nodes) =
                 (&simulation.shape(*block).operator, simulation.blocks().nodes_of(*block));
-            (operator.mass_kg, operator.center(&simulation.start_position()[nodes]))
+            (operator.mass_kg, operator.center(&simulation.blocks().rest_position[nodes]))
         };
         Some(Self { base, masses: stack.iter().map(mass).collect(), gravity })
     }
@@ -232,30 +232,6 @@ impl<'a> Stack<'a> {
             first > 0.0 && from_m + second / first >= foot_m + soft_per_m * mass_kg * across / first * arm_m
         })
     }
-}
-
-/// ∫ σ dA and ∫ σ² dA over the part of a convex polygon where σ = s − s₀ > 0; s is the first coordinate.
-fn moments_beyond(polygon: &[[f64; 2]], from_m: f64) -> [f64; 2] {
-    let mut kept: Vec<[f64; 2]> = Vec::with_capacity(polygon.len() + 1);
-    for (k, p) in polygon.iter().enumerate() {
-        let q = &polygon[(k + 1) % polygon.len()];
-        let (at_p, at_q) = (p[0] - from_m, q[0] - from_m);
-        if at_p >= 0.0 {
-            kept.push([at_p, p[1]]);
-        }
-        if at_p * at_q < 0.0 {
-            kept.push([0.0, p[1] + at_p / (at_p - at_q) * (q[1] - p[1])]);
-        }
-    }
-    let mut sums = [0.0; 2];
-    for k in 2..kept.len() {
-        let [a, b, c] = [kept[0], kept[k - 1], kept[k]];
-        let area_m2 = 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])).abs();
-        let sum = a[0] + b[0] + c[0];
-        sums[0] += area_m2 * sum / 3.0;
-        sums[1] += area_m2 * (sum * sum + a[0] * a[0] + b[0] * b[0] + c[0] * c[0]) / 12.0;
-    }
-    sums
 }
 
 #[cfg(test)]

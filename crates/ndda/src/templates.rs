@@ -2,7 +2,7 @@
 
 use std::fs::OpenOptions;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use serde::Serialize;
 
@@ -28,16 +28,29 @@ impl Template {
     /// Writes the scene to a file, and beside it the files that it refers to.
     ///
     /// # Errors
-    /// The file that cannot be written, or that is there already, unless it is to be replaced.
+    /// The file that cannot be written, or that is there already, unless it is to be replaced; a file of the same name as one that the scene refers to, with other
+    /// content, is never replaced.
     pub fn write(&self, scene: &Path, replace: bool) -> Result<(), String> {
         let folder = scene.parent().unwrap_or(Path::new(""));
-        let beside = self.files.iter().map(|(name, content)| (folder.join(name), *content));
-        let files: Vec<(PathBuf, &str)> = beside.chain([(scene.to_path_buf(), self.scene)]).collect();
-        if let Some((there, _)) = files.iter().find(|(file, _)| !replace && file.exists()) {
+        if !replace && scene.exists() {
             return Err(format!(
                 "{} is there already; --force replaces it, --out names another",
-                there.display()
+                scene.display()
             ));
+        }
+        let mut files = vec![(scene.to_path_buf(), self.scene)];
+        for (name, content) in self.files {
+            let file = folder.join(name);
+            match std::fs::read(&file) {
+                Ok(there) if there == content.as_bytes() => (),
+                Ok(_) => {
+                    return Err(format!(
+                        "{} is there already, with other content: move it, or write the scene to another folder with --out",
+                        file.display()
+                    ));
+                }
+                Err(_) => files.push((file, *content)),
+            }
         }
         for (file, content) in files {
             let mut options = OpenOptions::new();
