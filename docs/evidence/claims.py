@@ -203,7 +203,7 @@ def numbers(name, piece):
     """Numbers of a piece with their sentences, and where in the piece they are."""
     masked = piece.text
     if piece.holder not in (QUOTED, NIGHT):
-        masked = NO_CLAIM.sub(lambda match: " " * len(match[0]), masked)
+        masked = NO_CLAIM.sub(lambda mark: " " * len(mark[0]), masked)
     breaks = [0, *(match.end() for match in SENTENCE.finditer(piece.text)), len(piece.text)]
     if piece.text.startswith("|"):
         breaks = [0, len(piece.text)]

@@ -19,6 +19,25 @@ pub const PLACES: i32 = 400;
 /// Where a force acts [m], and the force [N].
 pub type Pull = (Vec3, Vec3);
 
+/// A base that tilts about a line across a direction, so that pressures grow in proportion to the distance from that line.
+pub struct Bearing {
+    /// Corners, along the direction and across it [m].
+    points: Vec<[f64; 2]>,
+    least_m: f64,
+    /// The outermost place along the direction [m].
+    pub most_m: f64,
+}
+
+impl Bearing {
+    /// ∫ (s − s₀) dA [m³] over what bears, and the centre of pressure [m], for one of the [`PLACES`] of s₀ where pressures begin.
+    pub fn beyond(&self, place: f64) -> [f64; 2] {
+        let inside = 4.0 * 10_f64.powf(-7.0 * place / f64::from(PLACES));
+        let from_m = self.most_m - inside * (self.most_m - self.least_m);
+        let [first, second] = moments_beyond(&self.points, from_m);
+        [first, from_m + second / first]
+    }
+}
+
 /// Where a block rests on others.
 pub struct Base {
     /// Corners of what it rests on, in two axes of the base, from below the mass centre.
@@ -130,17 +149,12 @@ impl Base {
         if normal_n <= 0.0 || arm_m <= 0.0 {
             return None;
         }
-        let places: Vec<[f64; 2]> =
-            self.points.iter().map(|[x, y]| [out.x * x + out.y * y, out.x * y - out.y * x]).collect();
-        let (least_m, most_m) =
-            places.iter().fold((f64::MAX, f64::MIN), |(a, b), [s, _]| (a.min(*s), b.max(*s)));
-        let way_m = self.way_to_rim(&foot, &out);
-        // How far it moves where pressures begin at s₀, and whether they hold it there.
+        let (bearing, way_m) = (self.bearing(&out), self.way_to_rim(&foot, &out));
+        // How far it moves where pressures begin at a place, and whether they hold it there.
         let moved = |place: f64| {
-            let from_m = most_m - 4.0 * 10_f64.powf(-7.0 * place / f64::from(PLACES)) * (most_m - least_m);
-            let [first, second] = moments_beyond(&places, from_m);
+            let [first, centre_m] = bearing.beyond(place);
             let moved_m = 0.5 * soft_m_pa * normal_n * arm_m / first;
-            (moved_m / way_m, first > 0.0 && from_m + second / first >= foot.dot(&out) + moved_m)
+            (moved_m / way_m, first > 0.0 && centre_m >= foot.dot(&out) + moved_m)
         };
         let holds = (0..PLACES).map(f64::from).find(|place| moved(*place).1).map(|place| {
             let (mut low, mut high) = ((place - 1.0).max(0.0), place);
@@ -151,6 +165,15 @@ impl Base {
             moved(high).0
         });
         Some((holds.unwrap_or(1.0).min(1.0), way_m))
+    }
+
+    /// The base as it bears when it tilts towards a direction.
+    pub fn bearing(&self, out: &Vec3) -> Bearing {
+        let points: Vec<[f64; 2]> =
+            self.points.iter().map(|[x, y]| [out.x * x + out.y * y, out.x * y - out.y * x]).collect();
+        let least_m = points.iter().fold(f64::MAX, |least, [s, _]| least.min(*s));
+        let most_m = points.iter().fold(f64::MIN, |most, [s, _]| most.max(*s));
+        Bearing { points, least_m, most_m }
     }
 
     /// N, and where the line of the forces meets the base.
@@ -236,7 +259,7 @@ pub fn with_all_on_it(bases: &[(BlockId, Base)], first: BlockId) -> Option<Vec<B
 }
 
 /// ∫ σ dA and ∫ σ² dA over the part of a convex polygon where σ = s − s₀ > 0; s is the first coordinate.
-pub fn moments_beyond(polygon: &[[f64; 2]], from_m: f64) -> [f64; 2] {
+fn moments_beyond(polygon: &[[f64; 2]], from_m: f64) -> [f64; 2] {
     let mut kept: Vec<[f64; 2]> = Vec::with_capacity(polygon.len() + 1);
     for (k, p) in polygon.iter().enumerate() {
         let q = &polygon[(k + 1) % polygon.len()];

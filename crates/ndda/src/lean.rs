@@ -4,8 +4,8 @@
 //! part 1 − x of d, x² (1 − x) = M, M = N h L₀/(9 k_n w d³). h is how far the line moves towards the edge by the tilt: h_c/cos²α for a weight whose
 //! mass centre is h_c above a base that dips by α. Beyond M = 4/27 there is no such x, and the block falls, although a rigid edge would hold it.
 //!
-//! Where the line meets the base in its middle third, B deep across the edge, all of the base bears. The distance e of the line from the middle grows to
-//! e/(1 − R), R = 6 N h L₀/(k_n w B³) = 54 M d³/B³, as long as that is within the third.
+//! Where N acts within the middle third of a base of depth B, the whole base is in contact. Its eccentricity e grows to e/(1 − R),
+//! R = 6 N h L₀/(k_n w B³) = 54 M d³/B³, as long as that stays within the middle third.
 
 use std::fmt;
 
@@ -115,28 +115,27 @@ pub fn worst(scene: &Scene, simulation: &Simulation) -> Option<Lean> {
     let bases: Vec<(BlockId, Base)> =
         free.into_iter().filter_map(|block| Some((block, Base::of(simulation, block, &gravity)?))).collect();
     let lean = |(block, base): &(BlockId, Base)| {
-        // What bridges several blocks is left out: how it divides its weight among them is not known.
+        // A block that rests on several others is left out, since how it divides its weight among them is not known.
         let stack = with_all_on_it(&bases, *block).unwrap_or_else(|| vec![*block]);
         let soft_m_pa = reference_m / penalty_pa;
         let leans = pulls(scene, simulation, &stack).into_iter().filter_map(|pulls| {
             let pressed = base.pressed(&pulls)?;
             let (inside_m, (moved, m)) = (pressed.inside_m, moved(pressed, soft_m_pa));
             match base.moved_outwards(&pulls, soft_m_pa) {
-                Some((farther, way_m)) if farther > 1.05 * moved => {
-                    let is_enough = |penalty_pa: f64| {
-                        base.moved_outwards(&pulls, reference_m / penalty_pa)
-                            .is_some_and(|at| at.0 <= ADVISED)
-                    };
-                    Some((way_m, (farther, ADVISED * least_from(penalty_pa, is_enough) / penalty_pa)))
-                }
-                _ => Some((inside_m, (moved, m))),
+                Some((farther, way_m)) if farther > 1.05 * moved => Some((farther, m, way_m, Some(pulls))),
+                _ => Some((moved, m, inside_m, None)),
             }
         });
-        let (inside_m, (moved, m)) =
-            leans.max_by(|(_, a), (_, b)| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)))?;
-        let block = simulation.blocks().names[block.index()].clone();
-        let (blocks_on_it, penalty_pa) = (stack.len() - 1, penalty_pa * m / ADVISED);
-        (moved > MOST_MOVED).then_some(Lean { block, blocks_on_it, inside_m, m, moved, penalty_pa })
+        let (moved, m, inside_m, over_corner) = leans
+            .max_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)))
+            .filter(|at| at.0 > MOST_MOVED)?;
+        let advised_pa = over_corner.map_or(penalty_pa * m / ADVISED, |pulls| {
+            let moved = |penalty_pa: f64| base.moved_outwards(&pulls, reference_m / penalty_pa);
+            least_from(penalty_pa, |penalty_pa| moved(penalty_pa).is_some_and(|at| at.0 <= ADVISED))
+        });
+        let (block, blocks_on_it) = (simulation.blocks().names[block.index()].clone(), stack.len() - 1);
+        let m = ADVISED * advised_pa / penalty_pa;
+        Some(Lean { block, blocks_on_it, inside_m, m, moved, penalty_pa: advised_pa })
     };
     bases.iter().filter_map(lean).max_by(|a, b| a.moved.total_cmp(&b.moved).then(a.m.total_cmp(&b.m)))
 }

@@ -13,7 +13,7 @@ use ndda_mesh::{BlockId, Vec3};
 use ndda_solver::{BodyKind, Simulation};
 use serde::Serialize;
 
-use crate::base_of_block::{Base, PLACES, moments_beyond, with_all_on_it};
+use crate::base_of_block::{Base, PLACES, with_all_on_it};
 use crate::numbers::counted;
 
 /// Part of the acceleration that penetration may take.
@@ -103,7 +103,7 @@ pub fn worst(scene: &Scene, simulation: &Simulation) -> Option<Rocking> {
         free.into_iter().filter_map(|block| Some((block, Base::of(simulation, block, &gravity)?))).collect();
     let soft_per_m = |penalty_pa: f64| reference_m / (2.0 * penalty_pa);
     let found = bases.iter().flat_map(|(block, base)| {
-        // What falls under its weight alone rocks at no acceleration.
+        // A stack that falls under its own weight has no acceleration at which it begins to rock.
         let stack = Stack::new(simulation, &bases, *block, base, &gravity)
             .filter(|stack| [peak, -peak].iter().all(|along| stack.stands(along, 0.0, 0.0)));
         let thresholds = [peak.normalize(), -peak.normalize()].map(|along| {
@@ -218,18 +218,13 @@ impl<'a> Stack<'a> {
         let place_m = mean(&|x| flat(&(x - self.base.origin)).dot(&out));
         let foot_m = place_m + height_m * tangential / across;
         let arm_m = height_m - (place_m - foot_m) * tangential / across;
-        let places: Vec<[f64; 2]> =
-            self.base.points.iter().map(|[x, y]| [out.x * x + out.y * y, out.x * y - out.y * x]).collect();
-        let (least_m, most_m) =
-            places.iter().fold((f64::MAX, f64::MIN), |(a, b), [s, _]| (a.min(*s), b.max(*s)));
-        if soft_per_m == 0.0 || foot_m > most_m {
-            return foot_m <= most_m;
+        let bearing = self.base.bearing(&out);
+        if soft_per_m == 0.0 || foot_m > bearing.most_m {
+            return foot_m <= bearing.most_m;
         }
         (0..PLACES).any(|k| {
-            let inside = 4.0 * 10_f64.powf(-7.0 * f64::from(k) / f64::from(PLACES));
-            let from_m = most_m - inside * (most_m - least_m);
-            let [first, second] = moments_beyond(&places, from_m);
-            first > 0.0 && from_m + second / first >= foot_m + soft_per_m * mass_kg * across / first * arm_m
+            let [first, centre_m] = bearing.beyond(f64::from(k));
+            first > 0.0 && centre_m >= foot_m + soft_per_m * mass_kg * across / first * arm_m
         })
     }
 }
@@ -246,7 +241,7 @@ mod tests {
         shaken_on_a_slope(cubes, 0.0)
     }
 
-    /// The same under gravity that is inclined, as on a slope that falls along x.
+    /// The same cubes on a slope that falls along x: gravity is inclined, not the base.
     fn shaken_on_a_slope(cubes: usize, slope_deg: f64) -> Option<Rocking> {
         let (down_x, down_z) = (10.0 * slope_deg.to_radians().sin(), 10.0 * slope_deg.to_radians().cos());
         // Tests run side by side.
