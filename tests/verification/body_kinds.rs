@@ -49,7 +49,9 @@ fn a_tumbling_block_of_any_kind_keeps_angular_momentum_energy_and_size() {
         // vibrates: twice that passes. The part of the energy that stretches it is as small, of which the scheme may lose some. Rigid rock has no stress at all.
         let rounds = rounding_walk(steps());
         let (lost, stressed) = if body == "Rigid" { (rounds, 0.0) } else { (largest / 20e9, 1e-6) };
-        row("spin of all kinds of body", &named("momentum"), worst.linear_momentum, AtMost(rounds));
+        // A velocity that does not change is rounded alike in each step, by half a unit at most.
+        let drift = 0.5 * f64::EPSILON * steps() as f64;
+        row("spin of all kinds of body", &named("momentum"), worst.linear_momentum, AtMost(drift));
         row("spin of all kinds of body", &named("angular momentum"), worst.angular_momentum, AtMost(rounds));
         row("spin of all kinds of body", &named("change of energy"), energy, AtMost(lost));
         row("spin of all kinds of body", &named("largest stress over E"), largest / 20e9, AtMost(stressed));

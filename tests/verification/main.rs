@@ -69,6 +69,7 @@ mod roof_wedge;
 mod safety_as_drawn;
 mod safety_factor;
 mod settling;
+mod settling_of_deforming_blocks;
 mod shaken_base;
 mod shaking;
 mod sliding_in_space;

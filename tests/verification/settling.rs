@@ -22,14 +22,19 @@ const SCENE: &str = "(title: \"stack\", time: (step_s: 1e-3, end_s: 1), gravity_
 
 #[test]
 fn a_stack_that_has_settled_lies_as_deep_as_its_weight_asks_for_and_stays() {
-    for (way, damping) in [("kinetic", Damping::Kinetic), ("local", Damping::Local { factor: 0.8 })] {
+    for (way, damping) in [
+        ("kinetic", Damping::Kinetic),
+        ("adaptive", Damping::Adaptive),
+        ("local", Damping::Local { factor: 0.8 }),
+    ] {
         settles_as_deep_as_its_weight_asks_for(way, damping);
     }
 }
 
 fn settles_as_deep_as_its_weight_asks_for(way: &str, damping: Damping) {
     let mut simulation = simulation(SCENE);
-    let settled = simulation.settle(&Settle { damping, ..Settle::new(1e-6, 100_000) }).unwrap();
+    let settled =
+        simulation.settle(&Settle { damping: Some(damping), ..Settle::new(1e-6, 100_000) }).unwrap();
     assert!(settled.steps > 10 && settled.speed_ratio <= 1e-6, "{settled:?}");
     // p = 2 k_n h/L₀ under the weight of what is above.
     let sunk = |block: u32| {
@@ -69,9 +74,10 @@ fn settles_as_deep_as_its_weight_asks_for(way: &str, damping: Damping) {
 fn a_scene_that_cannot_come_to_rest_names_the_block_that_moves() {
     let scene =
         std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/safety/plane_dry.ron")).unwrap();
-    for damping in [Damping::Kinetic, Damping::Local { factor: 0.8 }] {
+    for damping in [Damping::Kinetic, Damping::Adaptive, Damping::Local { factor: 0.8 }] {
         let mut simulation = crate::simulation(&scene.replace("friction_deg: 40", "friction_deg: 10"));
-        let error = simulation.settle(&Settle { damping, ..Settle::new(1e-4, 3000) }).unwrap_err();
+        let error =
+            simulation.settle(&Settle { damping: Some(damping), ..Settle::new(1e-4, 3000) }).unwrap_err();
         let StepError::NotSettled { towards, others, gone_m, .. } = error else { panic!("{error}") };
         assert!(others == 0 && gone_m > 0.0);
         // The plane is level and gravity tilted by 30°.
@@ -88,12 +94,15 @@ fn settling_ends_when_a_block_leaves_the_scene() {
     let scene = "(title: \"fall\", time: (step_s: 1e-3, end_s: 1), gravity_m_s2: (0, 0, -9.81), contact: Off,
         materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: 2500)],
         blocks: [(name: \"block\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)))])";
-    let mut simulation = simulation(scene);
-    let error = simulation.settle(&Settle::new(1e-4, 1_000_000)).unwrap_err();
-    let StepError::NotSettled { steps, gone_m, .. } = error else { panic!("{error}") };
-    let extent_m = 3f64.sqrt();
-    let steps_to_fall = (2.0 * extent_m / 9.81).sqrt() / 1e-3;
-    assert!(gone_m > extent_m && (steps as f64) < steps_to_fall + 100.0, "{gone_m} m in {steps} steps");
+    // Nothing can touch, so that nothing asks for other masses.
+    for mass_scaling in [false, true] {
+        let settle = Settle { mass_scaling, ..Settle::new(1e-4, 1_000_000) };
+        let error = simulation(scene).settle(&settle).unwrap_err();
+        let StepError::NotSettled { steps, gone_m, .. } = error else { panic!("{error}") };
+        let extent_m = 3f64.sqrt();
+        let steps_to_fall = (2.0 * extent_m / 9.81).sqrt() / 1e-3;
+        assert!(gone_m > extent_m && (steps as f64) < steps_to_fall + 100.0, "{gone_m} m in {steps} steps");
+    }
 }
 
 /// A tower of rigid blocks under a thin plate, which limits the step.
@@ -261,8 +270,8 @@ fn settling_goes_on_from_any_step_with_the_same_bits() {
         let model = ndda::Model::open(scene, &["time.end_s=0.01".into()]);
         model.unwrap_or_else(|errors| panic!("{}", errors.render(false))).simulation
     };
-    for damping in [Damping::Kinetic, Damping::Local { factor: 0.8 }] {
-        let settle = Settle { damping, mass_scaling: true, ..Settle::new(1e-9, 100_000) };
+    for damping in [Damping::Kinetic, Damping::Adaptive, Damping::Local { factor: 0.8 }] {
+        let settle = Settle { damping: Some(damping), mass_scaling: true, ..Settle::new(1e-9, 100_000) };
         let mut whole = open();
         let all = whole.settle(&settle).unwrap().steps;
         let bits = |simulation: &ndda_solver::Simulation| {

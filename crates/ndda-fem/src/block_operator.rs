@@ -47,6 +47,12 @@ impl BlockOperator {
         self
     }
 
+    /// Multiplies M by a factor; K and the rest shape stay.
+    pub fn scale_mass(&mut self, factor: f64) {
+        self.node_mass.iter_mut().chain(&mut self.mass).for_each(|mass| *mass *= factor);
+        self.mass_kg *= factor;
+    }
+
     fn assembled(
         position: &[Vec3],
         tets: Vec<[u32; 4]>,

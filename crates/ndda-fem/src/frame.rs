@@ -38,6 +38,13 @@ impl Frame {
         Self::Free { inverse_moment }
     }
 
+    /// Follows the masses of its block, all of which are multiplied by a factor.
+    pub fn scale_mass(&mut self, factor: f64) {
+        if let Self::Free { inverse_moment } = self {
+            *inverse_moment /= factor;
+        }
+    }
+
     /// R of positions x with mass centre `center` [m].
     ///
     /// # Errors

@@ -3478,13 +3478,14 @@ class Settle(Builder):
     most_steps : int, optional
         Steps after which it is given up. Default: 1000000.
     damping : SettleDampingChoice, optional
-        Damping on the way to rest. Default: `Kinetic`.
+        Damping on the way to rest. Default: `Adaptive` where blocks deform, `Kinetic` where none does or
+        contact is taken at the end of the step.
     mass_scaling : bool, optional
-        Whether rigid blocks have the inertia on the way to rest with which their contacts make all of them
+        Whether blocks have the inertia on the way to rest with which their contacts make all of them
         oscillate as fast as the step allows (weights stay as they are). Rest is reached in fewer steps, and
         as many whatever the step; where friction leaves several equilibria, another one may be found.
-        Default: true, but for contact at the end of the step, for `then: Settle()` of stages and for `ndda
-        safety`, which take true masses.
+        Default: true, but for contact at the end of the step and for `ndda safety`, which take true masses,
+        as rigid blocks do in `then: Settle()` of stages.
 
     Examples
     --------
@@ -3508,8 +3509,12 @@ class SettleDamping:
     'Kinetic'
     """
 
-    # All blocks are stopped whenever the kinetic energy of the scene begins to fall.
+    # All blocks are stopped whenever the kinetic energy of the scene begins to fall (Cundall 1976; Barnes
+    # 1999).
     Kinetic: ClassVar[Literal["Kinetic"]] = "Kinetic"
+    # All velocities are damped in proportion, critically for the slowest oscillation that is left (adaptive
+    # dynamic relaxation, Underwood 1983).
+    Adaptive: ClassVar[Literal["Adaptive"]] = "Adaptive"
 
     @dataclass(kw_only=True)
     class Local(Builder):
@@ -4146,7 +4151,8 @@ class Then:
         most_steps : int, optional
             Steps after which it is given up. Default: 1000000.
         damping : SettleDampingChoice, optional
-            Damping on the way to rest. Default: `Kinetic`.
+            Damping on the way to rest. Default: `Adaptive` where blocks deform, `Kinetic` where none does or
+            contact is taken at the end of the step.
         ramp : RampChoice, optional
             How blocks move during `over_s`. Default: `Dynamic`.
 
@@ -4614,7 +4620,7 @@ ReferenceChoice: TypeAlias = Reference.SlidingBlock | Reference.Collision | Refe
 RegionChoice: TypeAlias = Literal["All"] | Region.Plane | Region.Set
 ReleasePlaceChoice: TypeAlias = ReleasePlace.Points | ReleasePlace.Line | ReleasePlace.Area
 ScatterChoice: TypeAlias = Scatter.Always | Scatter.Normal | Scatter.LogNormal | Scatter.Uniform | Scatter.Triangular
-SettleDampingChoice: TypeAlias = Literal["Kinetic"] | SettleDamping.Local
+SettleDampingChoice: TypeAlias = Literal["Kinetic"] | Literal["Adaptive"] | SettleDamping.Local
 ShapeChoice: TypeAlias = Shape.Box | Shape.Prism | Shape.Hexahedron | Shape.Voussoir | Shape.Cylinder | Shape.Sphere | Shape.Polyhedron | Shape.Surface | Shape.Mesh
 SliversChoice: TypeAlias = Literal["Merge"] | Literal["Remove"]
 SolverChoice: TypeAlias = Literal["Cholesky"] | Solver.ConjugateGradients

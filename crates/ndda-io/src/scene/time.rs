@@ -39,29 +39,31 @@ pub struct Settle {
     pub tolerance: f64,
     /// Steps after which it is given up. Default: 1000000.
     pub most_steps: u64,
-    /// Damping on the way to rest. Default: `Kinetic`.
-    pub damping: SettleDamping,
-    /// Whether rigid blocks have the inertia on the way to rest with which their contacts make all of them oscillate as fast as the step allows (weights stay as they
+    /// Damping on the way to rest. Default: `Adaptive` where blocks deform, `Kinetic` where none does or contact is taken at the end of the step.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub damping: Option<SettleDamping>,
+    /// Whether blocks have the inertia on the way to rest with which their contacts make all of them oscillate as fast as the step allows (weights stay as they
     /// are). Rest is reached in fewer steps, and as many whatever the step; where friction leaves several equilibria, another one may be found. Default: true, but for
-    /// contact at the end of the step, for `then: Settle()` of stages and for `ndda safety`, which take true masses.
+    /// contact at the end of the step and for `ndda safety`, which take true masses, as rigid blocks do in `then: Settle()` of stages.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mass_scaling: Option<bool>,
 }
 
 impl Default for Settle {
     fn default() -> Self {
-        Self { tolerance: 1e-4, most_steps: 1_000_000, damping: SettleDamping::Kinetic, mass_scaling: None }
+        Self { tolerance: 1e-4, most_steps: 1_000_000, damping: None, mass_scaling: None }
     }
 }
 
 /// Damping on the way to rest.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub enum SettleDamping {
-    /// All blocks are stopped whenever the kinetic energy of the scene begins to fall.
-    #[default]
+    /// All blocks are stopped whenever the kinetic energy of the scene begins to fall (Cundall 1976; Barnes 1999).
     Kinetic,
+    /// All velocities are damped in proportion, critically for the slowest oscillation that is left (adaptive dynamic relaxation, Underwood 1983).
+    Adaptive,
     /// Each block loses a part of what a step has changed its velocity by, in proportion to its unbalanced force (Cundall 1987).
     Local {
         /// The part, above 0 and at most 1 [-]. Default: 0.8.

@@ -260,6 +260,11 @@ impl Prototype {
         self.supports.motions.last().map_or_else(Vec3::zeros, |motion| motion.displacement(time_s))
     }
 
+    /// Whether it deforms.
+    pub(crate) fn deforms(&self) -> bool {
+        matches!(self.kind, BodyKind::Elastic | BodyKind::Affine)
+    }
+
     /// Whether nothing holds the block, so that its momentum changes by outside forces only.
     pub fn is_free(&self) -> bool {
         self.kind != BodyKind::Fixed
@@ -279,7 +284,7 @@ impl Prototype {
         BlockScale {
             mass_kg: self.operator.mass_kg,
             is_held: !self.is_free(),
-            deforms: matches!(self.kind, BodyKind::Elastic | BodyKind::Affine),
+            deforms: self.deforms(),
             radius_m: self.operator.rest.iter().map(|x| x.norm()).fold(0.0, f64::max),
             height_m: self.smallest_height_m,
         }
@@ -324,8 +329,7 @@ impl Prototype {
     pub(crate) fn contact_body(&self) -> ndda_contact::Body {
         let immovable = self.kind == BodyKind::Fixed || self.supports.hold_all_rigid_motions(&self.operator);
         let mass_kg = if immovable { f64::INFINITY } else { self.operator.mass_kg };
-        let deforms = matches!(self.kind, BodyKind::Elastic | BodyKind::Affine);
-        ndda_contact::Body { deforms, ..ndda_contact::Body::at_rest(mass_kg) }
+        ndda_contact::Body { deforms: self.deforms(), ..ndda_contact::Body::at_rest(mass_kg) }
     }
 
     /// Whether a block is this shape up to a rigid motion, with the same mesh and material.

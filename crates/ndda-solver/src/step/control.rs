@@ -17,7 +17,7 @@ use crate::bodies::step_damping::StepDamping;
 use crate::bodies::workspaces::Workspaces;
 use crate::diagnostics::ledger::Ledger;
 use crate::error::StepError;
-use crate::linear::linear_solver::{Factor, LinearSolver};
+use crate::linear::linear_solver::Factor;
 use crate::step::Simulation;
 use crate::step::report::StepReport;
 use crate::step::state::{State, StepState};
@@ -74,7 +74,6 @@ impl StepState {
 /// Memory of the control.
 pub(crate) struct Control {
     pub(super) settings: AutoStep,
-    solver: Box<dyn LinearSolver>,
     state: State,
     ledger: Ledger,
     /// Factors of the shapes that are not in use, by halvings.
@@ -101,15 +100,9 @@ enum Rejection {
 }
 
 impl Control {
-    pub(crate) fn new(
-        settings: AutoStep,
-        solver: Box<dyn LinearSolver>,
-        state: &State,
-        ledger: &Ledger,
-    ) -> Self {
+    pub(crate) fn new(settings: AutoStep, state: &State, ledger: &Ledger) -> Self {
         Self {
             settings,
-            solver,
             state: state.clone(),
             ledger: ledger.clone(),
             spare_ledger: ledger.clone(),
@@ -122,6 +115,13 @@ impl Control {
     /// The balance of energy after a step \[J\], and after which.
     pub(crate) fn balance(&self) -> Option<(u64, f64)> {
         self.balance
+    }
+
+    /// Drops the factors of a shape that are not in use, which are of no use any more.
+    pub(crate) fn forget_factors(&mut self, shape: usize) {
+        if let Some(spare) = self.spare.get_mut(shape) {
+            spare.iter_mut().for_each(|factors| *factors = None);
+        }
     }
 
     /// Takes over the balance that belongs to a restored state.
@@ -301,8 +301,9 @@ impl Simulation {
                 continue;
             }
             let failed = |source| StepError::Factor { step_s: self.part_s, source };
-            shape.factor = shape.factored(&self.weights, control.solver.as_ref()).map_err(failed)?;
-            shape.filter = shape.factored_filter(&self.weights, control.solver.as_ref()).map_err(failed)?;
+            shape.factor = shape.factored(&self.weights, self.problem.solver.as_ref()).map_err(failed)?;
+            shape.filter =
+                shape.factored_filter(&self.weights, self.problem.solver.as_ref()).map_err(failed)?;
         }
         control.halvings = halvings;
         self.renew_scratches();
@@ -310,7 +311,7 @@ impl Simulation {
     }
 
     /// Memory of solves for the factors in use.
-    fn renew_scratches(&mut self) {
+    pub(super) fn renew_scratches(&mut self) {
         self.problem.workspaces.iter_mut().flatten().for_each(Workspaces::renew);
         for body in &mut self.bodies {
             let shape = &self.problem.shapes[body.shape];

@@ -1,6 +1,7 @@
 //! The problem, the state, and the step that joins them.
 
 pub(crate) mod account;
+pub(crate) mod adaptive_damping;
 pub(crate) mod blocks;
 pub(crate) mod bolt_forces;
 pub(crate) mod bolt_queries;
@@ -58,6 +59,7 @@ use crate::diagnostics::block_sums::StepSums;
 use crate::diagnostics::ledger::Ledger;
 use crate::error::StepError;
 use crate::integrators::time_integrator::{StepWeights, TimeIntegrator};
+use crate::linear::linear_solver::LinearSolver;
 use crate::step::contact_moments::ContactMoments;
 use crate::step::control::Control;
 use crate::step::follower::Places;
@@ -127,6 +129,8 @@ pub(crate) struct Problem {
     /// Groups of congruent blocks that one thread solves together.
     pub(crate) runs: CongruentGroups,
     pub(crate) integrator: Box<dyn TimeIntegrator>,
+    /// What factors K̃ of a block.
+    pub(crate) solver: Box<dyn LinearSolver>,
     /// Δt of a whole step.
     pub(crate) base_step_s: f64,
     /// Gravity \[m/s²\].

@@ -3,7 +3,8 @@
 //! Kinetic damping (Cundall 1976; Barnes 1999): the scene moves freely until its kinetic energy begins to fall, which is
 //! where its forces balance on the way; there it is stopped, and starts again from nearer to equilibrium. All blocks are
 //! stopped at once: each by itself, a stack of fifty would take 27 times the steps, since the quick oscillations of neighbours
-//! would stop the slow one of the whole again and again. With local damping, each block is damped by itself, in proportion to its
+//! would stop the slow one of the whole again and again. Blocks that deform oscillate too quickly to be stopped at a peak, where their masses are scaled: with
+//! adaptive damping, all velocities are damped in proportion ([`AdaptiveDamping`](crate::step::adaptive_damping::AdaptiveDamping)). With local damping, each block is damped by itself, in proportion to its
 //! unbalanced force ([`LocalDamping`](crate::LocalDamping)).
 
 use std::ops::ControlFlow;
@@ -29,17 +30,17 @@ pub struct Settle {
     pub tolerance: f64,
     /// Steps after which it is given up.
     pub most_steps: u64,
-    /// Damping on the way to rest.
-    pub damping: Damping,
-    /// Whether free rigid blocks have the inertia on the way with which contact makes all of them oscillate as fast as the step allows. Contact at the end of the step
-    /// and rest in the course of a run take no notice of it.
+    /// Damping on the way to rest; without, `Adaptive` where blocks deform and contact is taken at predicted positions, `Kinetic` elsewhere.
+    pub damping: Option<Damping>,
+    /// Whether blocks have the inertia on the way with which contact makes all of them oscillate as fast as the step allows. Contact at the end of the step
+    /// takes no notice of it, and in the course of a run rigid blocks take none.
     pub mass_scaling: bool,
 }
 
 impl Settle {
     /// Settling with kinetic damping and true masses.
     pub fn new(tolerance: f64, most_steps: u64) -> Self {
-        Self { tolerance, most_steps, damping: Damping::Kinetic, mass_scaling: false }
+        Self { tolerance, most_steps, damping: Some(Damping::Kinetic), mass_scaling: false }
     }
 }
 
@@ -50,7 +51,7 @@ pub struct Settled {
     pub steps: u64,
     /// Speed left over the largest speed on the way.
     pub speed_ratio: f64,
-    /// The smallest and the largest factor on the inertia of rigid blocks in the last step; none without mass scaling.
+    /// The smallest and the largest factor on the inertia of blocks in the last step; none without mass scaling.
     pub inertia_factors: Option<[f64; 2]>,
 }
 
@@ -144,9 +145,11 @@ impl Simulation {
     pub fn begin_to_settle(&mut self, settle: &Settle) -> Settling {
         let nodes = self.state.velocity.len();
         let start = std::mem::replace(&mut self.state.velocity, vec![Vec3::zeros(); nodes]);
-        self.scratch.scaled_masses = if settle.mass_scaling { self.masses_to_settle_with() } else { None };
-        let mut settling = Settling::new(self, Progress::new(self, settle.damping), start);
-        settling.masses = self.unscale_masses();
+        let damping = self.damping_of(settle);
+        let masses = if settle.mass_scaling { self.masses_to_settle_with(damping) } else { None };
+        self.put_on(masses);
+        let mut settling = Settling::new(self, Progress::new(self, damping), start);
+        settling.masses = self.take_off();
         settling
     }
 
@@ -161,9 +164,9 @@ impl Simulation {
         settling: &mut Settling,
         watch: &mut dyn FnMut(&Settled) -> ControlFlow<()>,
     ) -> Result<bool, StepError> {
-        self.scratch.scaled_masses = settling.masses.take();
+        self.scale_masses(settling.masses.take())?;
         let rests = self.come_to_rest((settle, settling), &Ramp::default(), watch);
-        settling.masses = self.unscale_masses();
+        settling.masses = self.unscale_masses()?;
         if rests?.is_none() {
             return Ok(false);
         }
@@ -173,6 +176,12 @@ impl Simulation {
         kept?;
         self.begin_at_rest(std::mem::take(&mut settling.start));
         Ok(true)
+    }
+
+    /// How the scene is damped on the way.
+    fn damping_of(&self, settle: &Settle) -> Damping {
+        let deforms = self.problem.shapes.iter().any(|shape| shape.deforms()) && self.newton.is_none();
+        settle.damping.unwrap_or(if deforms { Damping::Adaptive } else { Damping::Kinetic })
     }
 
     /// Runs with damping until all blocks are at rest, and loads and prescribed motions have gone through a ramp; gives the last step, or none where
@@ -194,6 +203,7 @@ impl Simulation {
             }
             self.settling = Some(SettlingStep::new(ramp.at_s(steps), speed_ratio.max(settle.tolerance)));
             (report, settling.settled.speed_ratio) = settling.progress.step(self)?;
+            self.follow_contacts(report.h)?;
             settling.settled.steps += 1;
             settling.settled.inertia_factors =
                 self.scratch.scaled_masses.as_ref().map(|masses| masses.range());
@@ -220,13 +230,17 @@ impl Simulation {
         let before = self.audit.ledger.clone();
         self.state.velocity.fill(Vec3::zeros());
         self.rest_on_quiet_faces();
+        let damping = self.damping_of(settle);
+        let masses = if settle.mass_scaling { self.masses_in_stages(damping) } else { None };
+        self.scale_masses(masses)?;
         let moves = |block: &BlockId| self.shape(*block).kind != BodyKind::Fixed;
         let moving_j = self.blocks().ids().filter(moves).map(|block| self.load_energy_j(block)).sum();
-        let mut progress = Progress::new(self, settle.damping);
+        let mut progress = Progress::new(self, damping);
         progress.moving_j = moving_j;
         let mut settling = Settling::new(self, progress, Vec::new());
         let ramp = Ramp { start_s: self.time_s(), step_s: self.step_s(), steps: ramp_steps };
         let last = self.come_to_rest((settle, &mut settling), &ramp, watch)?;
+        self.unscale_masses()?;
         self.settling = None;
         let Some(report) = last else { return Ok((settling.settled, StepReport::default())) };
         self.state.velocity.fill(Vec3::zeros());

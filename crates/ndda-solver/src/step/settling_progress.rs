@@ -7,16 +7,18 @@ use serde::{Deserialize, Serialize};
 use crate::bodies::kind::BodyKind;
 use crate::error::StepError;
 use crate::step::Simulation;
+use crate::step::adaptive_damping::AdaptiveDamping;
 use crate::step::local_damping::LocalDamping;
 use crate::step::oscillation::Oscillation;
 use crate::step::report::StepReport;
 
 /// Damping on the way to rest.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Damping {
     /// All blocks are stopped whenever the kinetic energy of the scene begins to fall.
-    #[default]
     Kinetic,
+    /// All velocities are damped in proportion, critically for the slowest oscillation that is left (Underwood 1983).
+    Adaptive,
     /// Each block loses this part of what a step has changed its velocity by.
     Local {
         /// α, between 0 and 1.
@@ -42,6 +44,7 @@ pub(super) struct Progress {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 enum Damper {
     Kinetic,
+    Adaptive(AdaptiveDamping),
     Local(LocalDamping),
 }
 
@@ -49,6 +52,7 @@ impl Progress {
     pub(super) fn new(simulation: &Simulation, damping: Damping) -> Self {
         let damper = match damping {
             Damping::Kinetic => Damper::Kinetic,
+            Damping::Adaptive => Damper::Adaptive(AdaptiveDamping::default()),
             Damping::Local { factor } => Damper::Local(LocalDamping::new(factor)),
         };
         let load_j = simulation.blocks().ids().map(|block| simulation.load_energy_j(block)).sum();
@@ -59,6 +63,7 @@ impl Progress {
     pub(super) fn step(&mut self, simulation: &mut Simulation) -> Result<(StepReport, f64), StepError> {
         let report = match &mut self.damper {
             Damper::Kinetic => simulation.step()?,
+            Damper::Adaptive(damping) => simulation.step_with_adaptive_damping(damping)?,
             Damper::Local(damping) => simulation.step_with_local_damping(damping)?,
         };
         let total_j = simulation.kinetic_energy_j();
@@ -75,12 +80,19 @@ impl Progress {
                 let left_j = if is_over { 0.0 } else { self.oscillation.left_j() };
                 Ok((report, ratio(left_j, self.scale_j())))
             }
-            Damper::Local(damping) => {
-                // Where an oscillation turns it is slow, and its forces are farthest from balance.
-                let unbalanced = ratio(damping.change_j(), self.load_j);
-                Ok((report, ratio(total_j, self.scale_j()).max(unbalanced)))
+            Damper::Adaptive(damping) => {
+                // What rounding moves is at rest.
+                let is_over = total_j.max(damping.change_j()) <= rounding_j(simulation);
+                let left = self.left_or_unbalanced(total_j, damping.change_j());
+                Ok((report, if is_over { 0.0 } else { left }))
             }
+            Damper::Local(damping) => Ok((report, self.left_or_unbalanced(total_j, damping.change_j()))),
         }
+    }
+
+    /// Speed that is left, or unbalanced forces over loads where that is more: where an oscillation turns it is slow, and its forces are farthest from balance.
+    fn left_or_unbalanced(&self, total_j: f64, change_j: f64) -> f64 {
+        ratio(total_j, self.scale_j()).max(ratio(change_j, self.load_j))
     }
 
     /// Energy that what is left is compared with [J].

@@ -156,6 +156,7 @@ impl Simulation {
                 base_step_s: step_s,
                 gravity_m_s2,
                 integrator,
+                solver,
             },
             contact,
         };
@@ -180,9 +181,9 @@ impl Simulation {
         }
         let loads = simulation.loads.total().to_vec();
         simulation.keep_static_reactions(&loads).map_err(Box::new)?;
-        simulation.open_ledger(solver.as_ref())?;
+        simulation.open_ledger()?;
         if let Some(settings) = auto_step {
-            let control = Control::new(settings, solver, &simulation.state, &simulation.audit.ledger);
+            let control = Control::new(settings, &simulation.state, &simulation.audit.ledger);
             simulation.control = Some(Box::new(control));
             simulation.audit.travel.notes_touching = true;
         }
@@ -293,9 +294,9 @@ impl Simulation {
     }
 
     /// Opens the ledger, with the accelerations at the start for integrators that need them.
-    fn open_ledger(&mut self, solver: &dyn LinearSolver) -> Result<(), SetupError> {
+    fn open_ledger(&mut self) -> Result<(), SetupError> {
         if self.weights.needs_acceleration {
-            self.place_accelerations(solver)?;
+            self.place_accelerations()?;
         }
         self.audit.ledger = self.new_ledger(self.outside_at_start());
         Ok(())

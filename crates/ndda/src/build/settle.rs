@@ -5,10 +5,11 @@ use ndda_solver::{Damping, Settle};
 
 /// The scene's choice; with scaled masses where it leaves that open.
 pub(crate) fn settle(settle: scene::Settle) -> Settle {
-    let damping = match settle.damping {
+    let damping = settle.damping.map(|damping| match damping {
         scene::SettleDamping::Kinetic => Damping::Kinetic,
+        scene::SettleDamping::Adaptive => Damping::Adaptive,
         scene::SettleDamping::Local { factor } => Damping::Local { factor },
-    };
+    });
     Settle {
         tolerance: settle.tolerance,
         most_steps: settle.most_steps,

@@ -39,7 +39,7 @@ impl fmt::Display for Resting<'_> {
                 write!(f, "settled in {steps} steps")?;
                 return match inertia_factors {
                     Some([least, most]) => {
-                        write!(f, ", inertia of rigid blocks scaled by factors of {least:.1e} to {most:.1e}")
+                        write!(f, ", inertia of blocks scaled by factors of {least:.1e} to {most:.1e}")
                     }
                     None => Ok(()),
                 };

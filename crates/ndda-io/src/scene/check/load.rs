@@ -32,7 +32,7 @@ impl Check<'_> {
                 let help = "1000000 is the default; leave `settle` out for a run that begins without rest";
                 self.error("settle.most_steps", "0 steps bring nothing to rest", help);
             }
-            if let SettleDamping::Local { factor } = settle.damping
+            if let Some(SettleDamping::Local { factor }) = settle.damping
                 && !(0.0 < factor && factor <= 1.0)
             {
                 let message = format!("{factor}: must be above 0 and at most 1");

@@ -138,7 +138,7 @@ impl Check<'_> {
                     let help = "1000000 is the default; Run(…) goes on without coming to rest";
                     self.error(path("then.most_steps"), "0 steps bring nothing to rest", help);
                 }
-                if let SettleDamping::Local { factor } = damping
+                if let Some(SettleDamping::Local { factor }) = damping
                     && !(0.0 < factor && factor <= 1.0)
                 {
                     let message = format!("{factor}: must be above 0 and at most 1");

@@ -5,12 +5,11 @@ use ndda_mesh::{BlockId, Vec3};
 use crate::bodies::kind::BodyKind;
 use crate::error::SetupError;
 use crate::integrators::time_integrator::{Inertia, StepWeights};
-use crate::linear::linear_solver::LinearSolver;
 use crate::step::Simulation;
 
 impl Simulation {
     /// M a = f − ∫Bᵀσ₀ at the start, contact being part of f.
-    pub(super) fn place_accelerations(&mut self, solver: &dyn LinearSolver) -> Result<(), SetupError> {
+    pub(super) fn place_accelerations(&mut self) -> Result<(), SetupError> {
         let force = self.force_at_start().map_err(Box::new)?;
         self.carry_contact_forces();
         for block in self.problem.blocks.ids() {
@@ -25,7 +24,7 @@ impl Simulation {
                 self.state.acceleration[range].fill(acceleration);
                 self.place_inertia(block, force, total, torque);
             } else if !shape.unknowns.is_empty() {
-                self.solve_acceleration(block, force, solver)?;
+                self.solve_acceleration(block, force)?;
                 let (position, acceleration) =
                     (&self.state.position[range.clone()], &self.state.acceleration[range]);
                 let operator = &self.shape(block).operator;
@@ -60,12 +59,7 @@ impl Simulation {
     }
 
     /// a of the nodes of a block that deforms, at the start [m/s²].
-    fn solve_acceleration(
-        &mut self,
-        block: BlockId,
-        force: &[Vec3],
-        solver: &dyn LinearSolver,
-    ) -> Result<(), SetupError> {
+    fn solve_acceleration(&mut self, block: BlockId, force: &[Vec3]) -> Result<(), SetupError> {
         let name = || self.problem.blocks.names[block.index()].clone();
         let mass_only = StepWeights { stiffness: 0.0, mass_per_s2: 1.0, ..self.weights };
         let body = &self.bodies[block.index()];
@@ -79,7 +73,11 @@ impl Simulation {
             load[dashpot.node as usize] -= dashpot.drag * velocity[dashpot.node as usize];
         }
         let matrix = shape.unknowns.matrix(&shape.operator, &shape.supports, &mass_only, 0.0);
-        let factor = solver.factor(&matrix).map_err(|source| SetupError::Factor { block: name(), source })?;
+        let factor = self
+            .problem
+            .solver
+            .factor(&matrix)
+            .map_err(|source| SetupError::Factor { block: name(), source })?;
         let mut rhs = vec![0.0; factor.unknowns()];
         shape.unknowns.gather(&load, &mut rhs);
         let solved = factor.solve_in_place(&mut rhs, &mut factor.new_scratch());
