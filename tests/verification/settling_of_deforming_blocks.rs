@@ -22,13 +22,13 @@ fn tower(body: &str, step_s: f64) -> Simulation {
               (name: \"third\", material: \"rock\", body: {body}, shape: Box(size_m: (4, 4, 4), cells: (2, 2, 2)), at_m: (0, 0, 8)),
               (name: \"plate\", material: \"rock\", body: {body}, shape: Box(size_m: (4, 4, 0.25), cells: (2, 2, 1)), at_m: (0, 0, 12)),
           ],
-          contact: Potential(penalty_pa: 2e8, potential: Smooth(reference_m: 1), friction: (friction_deg: 30)))"
+          contact: Potential(penalty_pa: 2e8, potential: Smooth(reference_m: 1), friction: (friction_deg: 30, shear_penalty_pa_m: 2e8)))"
     ))
 }
 
-/// Scaled masses, damped as suits the blocks.
+/// Scaled masses and adaptive damping.
 fn scaled(tolerance: f64) -> Settle {
-    Settle { damping: None, mass_scaling: true, ..Settle::new(tolerance, 100_000) }
+    Settle { damping: Some(Damping::Adaptive), mass_scaling: true, ..Settle::new(tolerance, 100_000) }
 }
 
 #[test]
@@ -109,7 +109,7 @@ fn a_block_that_tips_onto_its_face_while_it_settles_comes_to_rest() {
               (name: \"floor\", material: \"rock\", body: Fixed, shape: Box(size_m: (6, 6, 1), cells: (1, 1, 1)), at_m: (-3, -3, -1)),
               (name: \"slab\", material: \"rock\", shape: Box(size_m: (2, 2, 0.5), cells: (2, 2, 1)), at_m: (-1, -1, 0.001), turns: [(axis: (0, 1, 0), angle_deg: 2)]),
           ],
-          contact: Potential(penalty_pa: 2e8, potential: Smooth(reference_m: 1), friction: (friction_deg: 30)))",
+          contact: Potential(penalty_pa: 2e8, potential: Smooth(reference_m: 1), friction: (friction_deg: 30, shear_penalty_pa_m: 2e8)))",
     );
     simulation.settle(&scaled(1e-4)).unwrap();
     let slab = simulation.blocks().nodes_of(BlockId(1));
@@ -121,14 +121,14 @@ fn a_block_that_tips_onto_its_face_while_it_settles_comes_to_rest() {
         "settling of deforming blocks",
         "depth of a slab that has tipped onto its face [m]",
         -lowest,
-        Within(depth_m, 0.02),
+        Within(depth_m, 0.05),
     );
 }
 
 #[test]
 fn settling_of_deforming_blocks_goes_on_from_any_step_with_the_same_bits() {
-    for damping in [None, Some(Damping::Kinetic)] {
-        let settle = Settle { damping, ..scaled(1e-3) };
+    for damping in [Damping::Adaptive, Damping::Kinetic] {
+        let settle = Settle { damping: Some(damping), ..scaled(1e-3) };
         let mut whole = tower("Elastic", 1e-4);
         let all = whole.settle(&settle).unwrap().steps;
         for broken_off in (1..all).step_by(17) {

@@ -14,8 +14,8 @@ const MOST_THETA: f64 = 0.2;
 /// Adaptive dynamic relaxation (Underwood 1983, "Dynamic relaxation").
 ///
 /// After each step all velocities are multiplied by (1 − θ)/(1 + θ), θ = ω Δt, with damping 2 ω that is critical for an oscillation of frequency ω. ω is that of the
-/// scene as it moves now, by Rayleigh's quotient: ω² = −v·Δf/(Δt v·M v), Δf being what a step at v has changed forces by. Friction that acts on velocities
-/// is left out of them: it follows the motion as if contact were stiff. Quick oscillations die out first, and ω falls to that of the slowest.
+/// scene as it moves now, by Rayleigh's quotient: ω² = −v·Δf/(Δt v·M v), Δf being what a step at v has changed forces by. Quick oscillations die out first, and
+/// ω falls to that of the slowest. Friction that acts on velocities follows the motion as if contact were stiff, and θ is then at its limit more often.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct AdaptiveDamping {
     /// Velocities before the step.
@@ -86,14 +86,10 @@ impl Simulation {
             return;
         }
         let (nodes, factor) = (self.problem.blocks.nodes_of(block), self.inertia_factor(block));
-        let by_velocity = self.contact.as_ref().is_some_and(|model| model.needs_bodies());
-        let acts = by_velocity && self.scratch.contact_has_acted;
         for (node, mass_kg) in nodes.zip(&shape.operator.node_mass) {
             let (before, mass) = (damping.before[node], factor * mass_kg);
             let change = self.state.velocity[node] - before;
-            let friction_n = if acts { self.scratch.friction_force[node] } else { Vec3::zeros() };
-            // Forces on rigid blocks were divided by the factor on their inertia.
-            let impulse = mass * change - self.part_s * factor * friction_n;
+            let impulse = mass * change;
             sums.curved += before.dot(&(impulse - damping.impulse[node]));
             sums.moving += mass * before.norm_squared();
             sums.changed += mass * change.norm_squared();

@@ -114,7 +114,7 @@ impl Simulation {
         if let Ok(rates2) = self.contact_rates2(DEPTH) {
             masses.follow(&rates2, 0.0, &mut |_, _| {});
             let slower = if damping == Damping::Kinetic { SLOWER_TO_STOP } else { 1.0 };
-            masses.of_shapes = self.factors_of_shapes(slower * slower * scale_s2, &rates2);
+            masses.of_shapes = self.factors_of_shapes((scale_s2, slower), &rates2);
         }
         let is_any = fastest > 0.0 || masses.of_shapes.iter().any(|factor| *factor != 1.0);
         is_any.then(|| Box::new(masses))

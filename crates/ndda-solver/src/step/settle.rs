@@ -30,7 +30,7 @@ pub struct Settle {
     pub tolerance: f64,
     /// Steps after which it is given up.
     pub most_steps: u64,
-    /// Damping on the way to rest; without, `Adaptive` where blocks deform and contact is taken at predicted positions, `Kinetic` elsewhere.
+    /// Damping on the way to rest; without, `Adaptive` where blocks deform, contact is taken at predicted positions and friction does not act on velocities, `Kinetic` elsewhere.
     pub damping: Option<Damping>,
     /// Whether blocks have the inertia on the way with which contact makes all of them oscillate as fast as the step allows. Contact at the end of the step
     /// takes no notice of it, and in the course of a run rigid blocks take none.
@@ -181,7 +181,9 @@ impl Simulation {
     /// How the scene is damped on the way.
     fn damping_of(&self, settle: &Settle) -> Damping {
         let deforms = self.problem.shapes.iter().any(|shape| shape.deforms()) && self.newton.is_none();
-        settle.damping.unwrap_or(if deforms { Damping::Adaptive } else { Damping::Kinetic })
+        // Friction on velocities chatters where nothing stops it.
+        let chatters = self.contact.as_ref().is_some_and(|model| model.needs_bodies());
+        settle.damping.unwrap_or(if deforms && !chatters { Damping::Adaptive } else { Damping::Kinetic })
     }
 
     /// Runs with damping until all blocks are at rest, and loads and prescribed motions have gone through a ramp; gives the last step, or none where

@@ -51,8 +51,9 @@ impl Simulation {
         blocks.ids().map(rate2).collect()
     }
 
-    /// Factors on the masses of shapes with which blocks oscillate as fast as the step allows under contacts with these ω_c² [1/s²].
-    pub(super) fn factors_of_shapes(&self, scale_s2: f64, rates2: &[f64]) -> Vec<f64> {
+    /// Factors on the masses of shapes with which blocks oscillate as fast as the step allows under contacts with these ω_c² [1/s²]; or so many times
+    /// slower, as far as that does not ask for more than their own masses.
+    pub(super) fn factors_of_shapes(&self, (scale_s2, slower): (f64, f64), rates2: &[f64]) -> Vec<f64> {
         let surrounded = self.surrounded_rates2();
         let stiffness_pa_m = rates2
             .iter()
@@ -66,7 +67,10 @@ impl Simulation {
                 factors[body.shape] = factors[body.shape].max(asked);
             }
         }
-        factors.iter_mut().for_each(|factor| *factor = power_of_two_from(*factor));
+        for factor in &mut factors {
+            let (quick, slow) = (power_of_two_from(*factor), power_of_two_from(slower * slower * *factor));
+            *factor = if slow <= 1.0 { slow } else { quick.max(1.0) };
+        }
         factors
     }
 

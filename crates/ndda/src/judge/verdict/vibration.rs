@@ -26,7 +26,7 @@ pub(super) const SETTLE: &str = "`settle: ()` (in place of gravity_ramp_s)";
 pub(super) fn creep(simulation: &Simulation) -> [Entry; 2] {
     let worst = simulation.invariants();
     let (place, speed) = (worst.creep_place, worst.creep_speed);
-    let cure = "because vibrating contact makes its shear springs slip: give the contact a restitution below 1, or add `settle: ()`, or gravity_ramp_s (not together with settle), or remove shear_penalty_pa_m";
+    let cure = "because vibrating contact makes its shear springs slip: give the contact a restitution below 1, or add `settle: ()` (in a stage, `then: Settle(ramp: Damped)`), or gravity_ramp_s (not together with settle), or remove shear_penalty_pa_m";
     let where_it_is = format!(
         "block `{}` crept by {:.2} of its smallest element size, limit {PLACE}, {cure}",
         name(simulation, place),
