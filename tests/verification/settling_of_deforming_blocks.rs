@@ -121,7 +121,7 @@ fn a_block_that_tips_onto_its_face_while_it_settles_comes_to_rest() {
         "settling of deforming blocks",
         "depth of a slab that has tipped onto its face [m]",
         -lowest,
-        Within(depth_m, 0.05),
+        Within(depth_m, 0.02),
     );
 }
 

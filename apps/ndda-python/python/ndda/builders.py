@@ -3478,8 +3478,8 @@ class Settle(Builder):
     most_steps : int, optional
         Steps after which it is given up. Default: 1000000.
     damping : SettleDampingChoice, optional
-        Damping on the way to rest. Default: `Adaptive` where blocks deform and friction has shear springs or
-        bonds, `Kinetic` elsewhere, and where contact is taken at the end of the step.
+        Damping on the way to rest. Default: `Adaptive` where blocks deform; `Kinetic` where none does, where
+        friction acts on velocities, and where contact is taken at the end of the step.
     mass_scaling : bool, optional
         Whether blocks have the inertia on the way to rest with which their contacts make all of them
         oscillate as fast as the step allows (weights stay as they are). Rest is reached in fewer steps, and
@@ -4151,8 +4151,8 @@ class Then:
         most_steps : int, optional
             Steps after which it is given up. Default: 1000000.
         damping : SettleDampingChoice, optional
-            Damping on the way to rest. Default: `Adaptive` where blocks deform and friction has shear springs
-            or bonds, `Kinetic` elsewhere, and where contact is taken at the end of the step.
+            Damping on the way to rest. Default: `Adaptive` where blocks deform; `Kinetic` where none does,
+            where friction acts on velocities, and where contact is taken at the end of the step.
         ramp : RampChoice, optional
             How blocks move during `over_s`. Default: `Dynamic`.
 

@@ -92,7 +92,7 @@ pub enum Then {
         /// Steps after which it is given up. Default: 1000000.
         #[serde(default = "most_steps")]
         most_steps: u64,
-        /// Damping on the way to rest. Default: `Adaptive` where blocks deform and friction has shear springs or bonds, `Kinetic` elsewhere, and where contact is taken at the end of the step.
+        /// Damping on the way to rest. Default: `Adaptive` where blocks deform; `Kinetic` where none does, where friction acts on velocities, and where contact is taken at the end of the step.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         damping: Option<SettleDamping>,
         /// How blocks move during `over_s`. Default: `Dynamic`.

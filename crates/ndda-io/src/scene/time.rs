@@ -39,7 +39,7 @@ pub struct Settle {
     pub tolerance: f64,
     /// Steps after which it is given up. Default: 1000000.
     pub most_steps: u64,
-    /// Damping on the way to rest. Default: `Adaptive` where blocks deform and friction has shear springs or bonds, `Kinetic` elsewhere, and where contact is taken at the end of the step.
+    /// Damping on the way to rest. Default: `Adaptive` where blocks deform; `Kinetic` where none does, where friction acts on velocities, and where contact is taken at the end of the step.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub damping: Option<SettleDamping>,
     /// Whether blocks have the inertia on the way to rest with which their contacts make all of them oscillate as fast as the step allows (weights stay as they

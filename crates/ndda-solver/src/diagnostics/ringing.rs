@@ -63,7 +63,7 @@ impl RigidForcing {
             let torque: Vec3 = arms.map(|(x, f)| (x - center).cross(f)).sum();
             turn_m_s2 = rotation * (shape.turn_per_n_m * rotation.tr_mul(&torque));
         }
-        let deforms = matches!(shape.kind, BodyKind::Elastic | BodyKind::Affine);
+        let deforms = shape.deforms();
         let mut pressed_n = 0.0;
         if touches && deforms && !context.weights.contact_in_the_middle() {
             let pressing = context.force.iter().zip(context.external).map(|(f, load)| (f - load).norm());

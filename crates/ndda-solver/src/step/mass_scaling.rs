@@ -94,7 +94,7 @@ impl Simulation {
         self.masses_of(clamped_rate2, damping)
     }
 
-    /// The same in the course of a run, where the work of forces is accounted for and rigid blocks keep their own inertia, as do all where contact is damped.
+    /// The same for rest in the course of a run, for blocks that deform alone: rigid blocks keep their own inertia, since the work of forces is accounted for; all do where contact is damped.
     pub(super) fn masses_in_stages(&mut self, damping: Damping) -> Option<Box<ScaledMasses>> {
         if self.contact.as_ref().is_some_and(|model| model.damps()) {
             return None;

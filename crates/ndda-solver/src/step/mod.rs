@@ -129,7 +129,7 @@ pub(crate) struct Problem {
     /// Groups of congruent blocks that one thread solves together.
     pub(crate) runs: CongruentGroups,
     pub(crate) integrator: Box<dyn TimeIntegrator>,
-    /// What factors K̃ of a block.
+    /// The solver that factors K̃ of each block.
     pub(crate) solver: Box<dyn LinearSolver>,
     /// Δt of a whole step.
     pub(crate) base_step_s: f64,

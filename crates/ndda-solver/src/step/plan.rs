@@ -114,7 +114,7 @@ impl Simulation {
     }
 
     fn block_parts(&self) -> Vec<Part> {
-        let deforms = |shape: &Prototype| matches!(shape.kind, BodyKind::Elastic | BodyKind::Affine);
+        let deforms = Prototype::deforms;
         let stiff = self.problem.blocks.ids().filter(|&block| !deforms(self.shape(block)));
         let (count, tets) =
             stiff.fold((0, 0), |(n, tets), block| (n + 1, tets + self.problem.blocks.tets_of(block).len()));

@@ -181,7 +181,7 @@ impl Simulation {
     /// How the scene is damped on the way.
     fn damping_of(&self, settle: &Settle) -> Damping {
         let deforms = self.problem.shapes.iter().any(|shape| shape.deforms()) && self.newton.is_none();
-        // Friction on velocities chatters where nothing stops it.
+        // Friction on velocities may keep blocks vibrating under damping that does not stop them.
         let chatters = self.contact.as_ref().is_some_and(|model| model.needs_bodies());
         settle.damping.unwrap_or(if deforms && !chatters { Damping::Adaptive } else { Damping::Kinetic })
     }
@@ -241,8 +241,9 @@ impl Simulation {
         progress.moving_j = moving_j;
         let mut settling = Settling::new(self, progress, Vec::new());
         let ramp = Ramp { start_s: self.time_s(), step_s: self.step_s(), steps: ramp_steps };
-        let last = self.come_to_rest((settle, &mut settling), &ramp, watch)?;
+        let last = self.come_to_rest((settle, &mut settling), &ramp, watch);
         self.unscale_masses()?;
+        let last = last?;
         self.settling = None;
         let Some(report) = last else { return Ok((settling.settled, StepReport::default())) };
         self.state.velocity.fill(Vec3::zeros());

@@ -81,7 +81,7 @@ impl Progress {
                 Ok((report, ratio(left_j, self.scale_j())))
             }
             Damper::Adaptive(damping) => {
-                // What rounding moves is at rest.
+                // A scene whose nodes move by rounding errors alone is at rest.
                 let is_over = total_j.max(damping.change_j()) <= rounding_j(simulation);
                 let left = self.left_or_unbalanced(total_j, damping.change_j());
                 Ok((report, if is_over { 0.0 } else { left }))

@@ -332,9 +332,8 @@ impl Simulation {
 fn workspaces(shapes: &[Prototype], shape_of: &[usize], is_iterated: bool) -> Vec<Option<Workspaces>> {
     let mut count = vec![0; shapes.len()];
     shape_of.iter().for_each(|&shape| count[shape] += 1);
-    let deforms = |shape: &Prototype| matches!(shape.kind, BodyKind::Elastic | BodyKind::Affine);
     let share = |(shape, count): (&Prototype, usize)| {
-        (count >= MANY && shape.is_free() && deforms(shape) && !is_iterated).then(Workspaces::new)
+        (count >= MANY && shape.is_free() && shape.deforms() && !is_iterated).then(Workspaces::new)
     };
     shapes.iter().zip(count).map(share).collect()
 }

@@ -113,10 +113,9 @@ impl Simulation {
         let Some(mut masses) = self.scratch.scaled_masses.take() else { return Ok(()) };
         let mut more = vec![1.0f64; self.problem.shapes.len()];
         for (block, body) in self.blocks().ids().zip(&self.bodies) {
-            let h = self.part_s * self.contact_rate2(block).sqrt();
-            if self.shape(block).is_scalable() && h > MOST * bound {
-                more[body.shape] =
-                    more[body.shape].max(power_of_two_from(masses.scale_s2 * self.contact_rate2(block)));
+            let rate2 = self.contact_rate2(block);
+            if self.shape(block).is_scalable() && self.part_s * rate2.sqrt() > MOST * bound {
+                more[body.shape] = more[body.shape].max(power_of_two_from(masses.scale_s2 * rate2));
             }
         }
         let grown: Vec<usize> = (0..more.len()).filter(|shape| more[*shape] > 1.0).collect();
