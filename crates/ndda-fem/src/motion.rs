@@ -68,17 +68,22 @@ impl Motion {
         times_s.fold(0.0, |most, time_s| most.max(off(self.velocity(time_s))))
     }
 
-    /// The largest acceleration of its records, of several that of the largest [m/s²]; zero for rows of displacements, which have none.
-    pub fn peak_acceleration(&self) -> Vec3 {
+    /// Accelerations of all its records together at each of their rows [m/s²]; rows of displacements have none.
+    pub fn accelerations(&self) -> Vec<Vec3> {
+        let records = self.records();
+        let mut times_s: Vec<f64> =
+            records.iter().flat_map(|record| record.rows.iter().map(|row| row[0])).collect();
+        times_s.sort_by(f64::total_cmp);
+        times_s.dedup();
+        times_s.iter().map(|time_s| records.iter().map(|record| record.acceleration(*time_s)).sum()).collect()
+    }
+
+    /// Its records, those within sums included.
+    fn records(&self) -> Vec<&Record> {
         match self {
-            Self::Rows(_) => Vec3::zeros(),
-            Self::Record(Record { direction, rows }) => {
-                rows.iter().fold(0.0, |most, row| f64::max(most, row[1].abs())) * direction
-            }
-            Self::Sum(parts) => {
-                let larger = |a: Vec3, b: Vec3| if b.norm_squared() > a.norm_squared() { b } else { a };
-                parts.iter().map(Self::peak_acceleration).fold(Vec3::zeros(), larger)
-            }
+            Self::Rows(_) => Vec::new(),
+            Self::Record(record) => vec![record],
+            Self::Sum(parts) => parts.iter().flat_map(Self::records).collect(),
         }
     }
 
@@ -150,6 +155,17 @@ impl Record {
         self.along(time_s).0 * self.direction
     }
 
+    /// Acceleration at a time [m/s²].
+    fn acceleration(&self, time_s: f64) -> Vec3 {
+        let next = self.rows.partition_point(|row| row[0] < time_s);
+        let along = match (next.checked_sub(1).and_then(|i| self.rows.get(i)), self.rows.get(next)) {
+            (_, Some(row)) if row[0] == time_s => row[1],
+            (Some(last), Some(row)) => last[1] + (row[1] - last[1]) * (time_s - last[0]) / (row[0] - last[0]),
+            _ => 0.0,
+        };
+        along * self.direction
+    }
+
     /// Velocity and displacement along the direction.
     fn along(&self, time_s: f64) -> (f64, f64) {
         let next = self.rows.partition_point(|row| row[0] <= time_s);
@@ -196,6 +212,16 @@ mod tests {
         let record = Motion::Record(Record::new(Vec3::y(), &rows));
         assert!((record.unresolved_m_s(-1.0, 2.0) - 1.0).abs() < 1e-8);
         assert!(record.unresolved_m_s(0.2, 0.9) < 1e-15);
+    }
+
+    #[test]
+    fn accelerations_of_records_add_up_at_the_rows_of_each() {
+        let one = Record::new(Vec3::x(), &[(0.0, 1.0), (1.0, 3.0)]);
+        let other = Record::new(2.0 * Vec3::z(), &[(0.5, 5.0), (2.0, 8.0)]);
+        let both = Motion::Sum(vec![Motion::Record(one), Motion::Sum(vec![Motion::Record(other)])]);
+        let at_rows = [(1.0, 0.0), (2.0, 10.0), (3.0, 12.0), (0.0, 16.0)].map(|(x, z)| Vec3::new(x, 0.0, z));
+        assert_eq!(both.accelerations(), at_rows);
+        assert!(Motion::Rows(vec![(0.0, Vec3::x())]).accelerations().is_empty());
     }
 
     #[test]

@@ -166,7 +166,9 @@ fn no_less(stalled: Option<u64>) -> String {
 /// What helps a scene to come to rest.
 fn cure_of_unrest(stalled: Option<u64>) -> &'static str {
     match stalled {
-        None => "hold them, or raise settle.most_steps if they are only slow",
+        None => {
+            "hold them, leave out settle if they are to slide or fall, or raise settle.most_steps if they are only slow"
+        }
         Some(_) => {
             "hold them, or leave out settle if they are to slide or fall; if they only vibrate, raise settle.tolerance"
         }

@@ -176,6 +176,19 @@ impl Base {
         Bearing { points, least_m, most_m }
     }
 
+    /// Directions straight over each of its edges, and over its corners midway between those; none where it is no area.
+    pub fn outwards(&self) -> Vec<Vec3> {
+        let corners = &self.points;
+        if corners.len() < 3 {
+            return Vec::new();
+        }
+        let over = |k: usize| {
+            let [a, b] = [k, k + 1].map(|at| corners[at % corners.len()]);
+            Vec3::new(b[1] - a[1], a[0] - b[0], 0.0).normalize()
+        };
+        (0..corners.len()).flat_map(|k| [over(k), (over(k) + over(k + 1)).normalize()]).collect()
+    }
+
     /// N, and where the line of the forces meets the base.
     fn resultant(&self, pulls: &[Pull]) -> (f64, Vec3) {
         let normal_n: f64 = pulls.iter().map(|(_, f)| f.dot(&self.axes[2])).sum();

@@ -8,6 +8,7 @@
 
 use std::fmt;
 
+use ndda_fem::Motion;
 use ndda_io::scene::{Contact, Potential, Scene};
 use ndda_mesh::{BlockId, Vec3};
 use ndda_solver::{BodyKind, Simulation};
@@ -26,6 +27,8 @@ const MOST_BLOCKS: usize = 100;
 const MOST_DECADES: f64 = 8.0;
 /// Accelerations beyond so many g are not looked for.
 const MOST_G: f64 = 100.0;
+/// Part of the largest demand on a base from which on an instant is looked at.
+const LEAST_DEMAND: f64 = 0.5;
 
 /// From which acceleration on a block rocks, with what rests on it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -34,9 +37,9 @@ pub struct Rocking {
     pub block: String,
     /// Blocks that rest on it.
     pub blocks_on_it: usize,
-    /// Largest acceleration of the base across gravity [m/s²].
+    /// Acceleration of the base at the instant that is looked at, all records together [m/s²].
     pub peak_m_s2: f64,
-    /// Acceleration from which on it rocks [m/s²].
+    /// Acceleration in its direction from which on it rocks [m/s²].
     pub rocks_at_m_s2: f64,
     /// The same on an edge that does not give way [m/s²].
     pub rigid_m_s2: f64,
@@ -84,7 +87,7 @@ impl fmt::Display for Rocking {
     }
 }
 
-/// Of the blocks on a shaken base that rock too early, and by too much, the one that loses most; where none does, the one that rocks first. None where no base is
+/// Of the blocks on a shaken base that rock too early, and by too much, the one that loses most; where none does, the one that comes nearest to rocking. None where no base is
 /// shaken by a record, without gravity, and of potentials other than `Smooth`.
 pub fn worst(scene: &Scene, simulation: &Simulation) -> Option<Rocking> {
     let Some(Contact::Potential { penalty_pa, potential: Potential::Smooth { reference_m }, .. }) =
@@ -93,48 +96,66 @@ pub fn worst(scene: &Scene, simulation: &Simulation) -> Option<Rocking> {
         return None;
     };
     let (gravity, blocks) = (Vec3::from(scene.gravity_m_s2), simulation.blocks());
-    let peak = peak_across(simulation, &gravity)?;
+    gravity.try_normalize(0.0)?;
+    let accelerations = accelerations(simulation);
     let free: Vec<BlockId> =
         blocks.ids().filter(|block| simulation.shape(*block).kind != BodyKind::Fixed).collect();
-    if free.len() > MOST_BLOCKS {
+    if accelerations.is_empty() || free.len() > MOST_BLOCKS {
         return None;
     }
     let bases: Vec<(BlockId, Base)> =
         free.into_iter().filter_map(|block| Some((block, Base::of(simulation, block, &gravity)?))).collect();
     let soft_per_m = |penalty_pa: f64| reference_m / (2.0 * penalty_pa);
     let found = bases.iter().flat_map(|(block, base)| {
-        // A stack that falls under its own weight has no acceleration at which it begins to rock.
-        let stack = Stack::new(simulation, &bases, *block, base, &gravity)
-            .filter(|stack| [peak, -peak].iter().all(|along| stack.stands(along, 0.0, 0.0)));
-        let thresholds = [peak.normalize(), -peak.normalize()].map(|along| {
-            let stack = stack.as_ref()?;
+        let stack = Stack::new(simulation, &bases, *block, base, &gravity);
+        let peaks = stack.as_ref().map_or_else(Vec::new, |stack| stack.peaks(&accelerations));
+        let thresholds = peaks.into_iter().map(move |peak| {
+            let (stack, along) = (stack.as_ref()?, peak.normalize());
             let rigid_m_s2 = stack.threshold(&along, 0.0)?;
             let rocks_at_m_s2 = stack.threshold(&along, soft_per_m(penalty_pa))?;
-            Some((stack.clone(), along, [rocks_at_m_s2, rigid_m_s2], block))
+            Some(Found { stack: stack.clone(), peak, at: [rocks_at_m_s2, rigid_m_s2], block })
         });
-        thresholds.into_iter().flatten()
+        thresholds.flatten()
     });
-    let peak_m_s2 = peak.norm();
-    let rank = |at: [f64; 2]| match are_doubtful(at, peak_m_s2) {
-        true => (1, lost(at)),
-        false => (0, -at[0]),
-    };
-    let (stack, along, at, block) = found.max_by(|a, b| {
-        let (a, b) = (rank(a.2), rank(b.2));
+    let worst = found.max_by(|a, b| {
+        let (a, b) = (a.rank(), b.rank());
         a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
     })?;
+    let Found { stack, peak, at, block } = &worst;
     let is_enough = |penalty_pa: f64| {
-        stack.threshold(&along, soft_per_m(penalty_pa)).is_some_and(|soft| lost([soft, at[1]]) <= ADVISED)
+        let soft = stack.threshold(&peak.normalize(), soft_per_m(penalty_pa));
+        soft.is_some_and(|soft| lost([soft, at[1]]) <= ADVISED)
     };
-    let advised_penalty_pa = if lost(at) > ADVISED { least_from(penalty_pa, is_enough) } else { penalty_pa };
+    let advised_penalty_pa = if lost(*at) > ADVISED { least_from(penalty_pa, is_enough) } else { penalty_pa };
     Some(Rocking {
         block: blocks.names[block.index()].clone(),
-        blocks_on_it: stack.masses.len() - 1,
-        peak_m_s2,
+        blocks_on_it: stack.blocks_on_it,
+        peak_m_s2: peak.norm(),
         rocks_at_m_s2: at[0],
         rigid_m_s2: at[1],
         advised_penalty_pa,
     })
+}
+
+/// A block at one of the peaks of its base.
+struct Found<'a> {
+    stack: Stack<'a>,
+    /// Acceleration of the base [m/s²].
+    peak: Vec3,
+    /// Accelerations along it from which on it rocks, and would on rigid edges [m/s²].
+    at: [f64; 2],
+    block: &'a BlockId,
+}
+
+impl Found<'_> {
+    /// Blocks that rock too early come first, the one that loses most before others; then those that come nearest to rocking.
+    fn rank(&self) -> (u8, f64) {
+        let peak_m_s2 = self.peak.norm();
+        match are_doubtful(self.at, peak_m_s2) {
+            true => (1, lost(self.at)),
+            false => (0, peak_m_s2 / self.at[0]),
+        }
+    }
 }
 
 /// About the least penalty from one on that is enough [Pa].
@@ -147,28 +168,42 @@ pub fn least_from(penalty_pa: f64, is_enough: impl Fn(f64) -> bool) -> f64 {
     penalty_pa * 10_f64.powf(high)
 }
 
-/// The largest acceleration of a record that moves blocks, as far as it is across gravity [m/s²].
-fn peak_across(simulation: &Simulation, gravity: &Vec3) -> Option<Vec3> {
-    let down = gravity.try_normalize(0.0)?;
+/// Accelerations of the records that move blocks, those of one base together, at each of their rows [m/s²].
+fn accelerations(simulation: &Simulation) -> Vec<Vec3> {
     let motions = simulation.blocks().ids().flat_map(|block| &simulation.shape(block).supports.motions);
-    let across = motions.map(|motion| {
-        let peak = motion.peak_acceleration();
-        peak - peak.dot(&down) * down
+    let mut seen: Vec<&Motion> = Vec::new();
+    motions.for_each(|motion| {
+        if !seen.contains(&motion) {
+            seen.push(motion);
+        }
     });
-    across.max_by(|a, b| a.norm().total_cmp(&b.norm())).filter(|peak| peak.norm() > 0.0)
+    let all = seen.into_iter().flat_map(Motion::accelerations);
+    all.filter(|acceleration| *acceleration != Vec3::zeros()).collect()
 }
 
 /// A block and all that rests on it alone, on its base.
 #[derive(Clone)]
 struct Stack<'a> {
     base: &'a Base,
-    /// Mass [kg] and centre [m] of each.
-    masses: Vec<(f64, Vec3)>,
+    blocks_on_it: usize,
+    mass_kg: f64,
+    /// Mass centre [m].
+    centre: Vec3,
     gravity: &'a Vec3,
 }
 
+/// Where weight and inertia meet the base, along a direction across it.
+struct Foot {
+    /// Acceleration that presses the stack on its base [m/s²].
+    across_m_s2: f64,
+    /// Place along the direction, from the base's origin [m].
+    foot_m: f64,
+    /// How far a tilt moves it on, per radian [m].
+    arm_m: f64,
+}
+
 impl<'a> Stack<'a> {
-    /// None where something rests on the stack and on other blocks.
+    /// None where something rests on the stack and on other blocks, and where it does not stand at rest.
     fn new(
         simulation: &Simulation,
         bases: &[(BlockId, Base)],
@@ -182,49 +217,91 @@ impl<'a> Stack<'a> {
                 (&simulation.shape(*block).operator, simulation.blocks().nodes_of(*block));
             (operator.mass_kg, operator.center(&simulation.blocks().rest_position[nodes]))
         };
-        Some(Self { base, masses: stack.iter().map(mass).collect(), gravity })
+        let masses: Vec<(f64, Vec3)> = stack.iter().map(mass).collect();
+        let mass_kg: f64 = masses.iter().map(|(mass_kg, _)| mass_kg).sum();
+        let centre = masses.iter().map(|(mass_kg, x)| *mass_kg * x).sum::<Vec3>() / mass_kg;
+        let stack = Self { base, blocks_on_it: masses.len() - 1, mass_kg, centre, gravity };
+        // One that falls under its own weight has no acceleration at which it begins to rock.
+        let outs = base.outwards();
+        let stands = outs.iter().all(|out| stack.stands_towards(out, &Vec3::zeros(), 0.0));
+        (stands && !outs.is_empty()).then_some(stack)
+    }
+
+    /// Of the accelerations of its base, those that come nearest to toppling it over an edge or a corner.
+    fn peaks(&self, accelerations: &[Vec3]) -> Vec<Vec3> {
+        let nearest = |out: Vec3| {
+            let most_m = self.base.bearing(&out).most_m;
+            let demand = |acceleration: &Vec3| {
+                let Foot { across_m_s2, foot_m, .. } = self.foot(&out, acceleration);
+                if across_m_s2 > 0.0 { foot_m / most_m } else { f64::INFINITY }
+            };
+            let demands = accelerations.iter().map(|acceleration| (demand(acceleration), *acceleration));
+            demands.max_by(|a, b| a.0.total_cmp(&b.0))
+        };
+        let mut peaks: Vec<(f64, Vec3)> = self.base.outwards().into_iter().filter_map(nearest).collect();
+        let largest = peaks.iter().fold(0.0, |most, (demand, _)| f64::max(most, *demand));
+        peaks.retain(|(demand, _)| *demand >= LEAST_DEMAND * largest && *demand > 0.0);
+        let mut distinct: Vec<Vec3> = Vec::new();
+        for (_, peak) in peaks {
+            if !distinct.contains(&peak) {
+                distinct.push(peak);
+            }
+        }
+        distinct
     }
 
     /// The acceleration of the base along a direction up to which it stands [m/s²], for θ N = `soft_per_m` N²/∫ (s − s₀) dA; none where it does not stand at rest, or
     /// where nothing topples it.
     fn threshold(&self, along: &Vec3, soft_per_m: f64) -> Option<f64> {
-        let (mut low, mut high) = (0.0, MOST_G * self.gravity.norm());
-        if !self.stands(along, low, soft_per_m) || self.stands(along, high, soft_per_m) {
-            return None;
+        // Inertia tips it against the acceleration.
+        let [one, two, _] = &self.base.axes;
+        let own = Vec3::new(-one.dot(along), -two.dot(along), 0.0).try_normalize(0.0);
+        let mut least = None;
+        for out in own.into_iter().chain(self.base.outwards()) {
+            let stands =
+                |acceleration_m_s2: f64| self.stands_towards(&out, &(acceleration_m_s2 * along), soft_per_m);
+            let (mut low, mut high) = (0.0, least.unwrap_or(MOST_G * self.gravity.norm()));
+            if stands(high) {
+                continue;
+            }
+            if !stands(low) {
+                return None;
+            }
+            for _ in 0..60 {
+                let middle = 0.5 * (low + high);
+                if stands(middle) { low = middle } else { high = middle }
+            }
+            least = Some(low);
         }
-        for _ in 0..60 {
-            let middle = 0.5 * (low + high);
-            if self.stands(along, middle, soft_per_m) { low = middle } else { high = middle }
-        }
-        Some(low)
+        least
     }
 
-    /// Whether it stands on a base that accelerates.
-    fn stands(&self, along: &Vec3, acceleration_m_s2: f64, soft_per_m: f64) -> bool {
+    /// Where weight and inertia meet the base as it accelerates, along a direction across it.
+    fn foot(&self, out: &Vec3, acceleration: &Vec3) -> Foot {
         let [one, two, normal] = &self.base.axes;
         let flat = |v: &Vec3| Vec3::new(one.dot(v), two.dot(v), 0.0);
-        // Inertia tips it against the acceleration.
-        let Some(out) = flat(&-along).try_normalize(0.0) else { return true };
-        let field = self.gravity - acceleration_m_s2 * along;
-        let (across, tangential) = (field.dot(normal), flat(&field).dot(&out));
-        if across <= 0.0 {
+        let field = self.gravity - acceleration;
+        let (across_m_s2, tangential) = (field.dot(normal), flat(&field).dot(out));
+        let height_m = (self.base.origin - self.centre).dot(normal);
+        let place_m = flat(&(self.centre - self.base.origin)).dot(out);
+        let foot_m = place_m + height_m * tangential / across_m_s2;
+        let arm_m = height_m - (place_m - foot_m) * tangential / across_m_s2;
+        Foot { across_m_s2, foot_m, arm_m }
+    }
+
+    /// Whether a base that accelerates holds it from tipping in a direction.
+    fn stands_towards(&self, out: &Vec3, acceleration: &Vec3, soft_per_m: f64) -> bool {
+        let Foot { across_m_s2, foot_m, arm_m } = self.foot(out, acceleration);
+        if across_m_s2 <= 0.0 {
             return false;
         }
-        let mass_kg: f64 = self.masses.iter().map(|(mass, _)| mass).sum();
-        let mean = |of: &dyn Fn(&Vec3) -> f64| {
-            self.masses.iter().map(|(mass, x)| mass * of(x)).sum::<f64>() / mass_kg
-        };
-        let height_m = mean(&|x| (self.base.origin - x).dot(normal));
-        let place_m = mean(&|x| flat(&(x - self.base.origin)).dot(&out));
-        let foot_m = place_m + height_m * tangential / across;
-        let arm_m = height_m - (place_m - foot_m) * tangential / across;
-        let bearing = self.base.bearing(&out);
+        let bearing = self.base.bearing(out);
         if soft_per_m == 0.0 || foot_m > bearing.most_m {
             return foot_m <= bearing.most_m;
         }
         (0..PLACES).any(|k| {
             let [first, centre_m] = bearing.beyond(f64::from(k));
-            first > 0.0 && centre_m >= foot_m + soft_per_m * mass_kg * across / first * arm_m
+            first > 0.0 && centre_m >= foot_m + soft_per_m * self.mass_kg * across_m_s2 / first * arm_m
         })
     }
 }
@@ -238,16 +315,23 @@ mod tests {
 
     /// Cubes of 1 m on each other on a base that follows a record of 3 m/s².
     fn shaken(cubes: usize) -> Option<Rocking> {
-        shaken_on_a_slope(cubes, 0.0)
+        shaken_by(cubes, (0.0, 10.0), &[("(1, 0, 0)", "0,0\n0.5,3\n1,-2\n1.5,0\n")])
     }
 
-    /// The same cubes on a slope that falls along x: gravity is inclined, not the base.
-    fn shaken_on_a_slope(cubes: usize, slope_deg: f64) -> Option<Rocking> {
-        let (down_x, down_z) = (10.0 * slope_deg.to_radians().sin(), 10.0 * slope_deg.to_radians().cos());
+    /// Cubes on a base that follows records, each with its direction, under a gravity (x, −z).
+    fn shaken_by(cubes: usize, (down_x, down_z): (f64, f64), records: &[(&str, &str)]) -> Option<Rocking> {
         // Tests run side by side.
         let (process, thread) = (std::process::id(), std::thread::current().id());
-        let record = std::env::temp_dir().join(format!("ndda_rocking_{process}_{thread:?}.csv"));
-        std::fs::write(&record, "time_s,acceleration_m_s2\n0,0\n0.5,3\n1,-2\n1.5,0\n").unwrap();
+        let files: Vec<_> = (0..records.len())
+            .map(|k| std::env::temp_dir().join(format!("ndda_rocking_{process}_{thread:?}_{k}.csv")))
+            .collect();
+        for ((_, rows), file) in records.iter().zip(&files) {
+            std::fs::write(file, format!("time_s,acceleration_m_s2\n{rows}")).unwrap();
+        }
+        let record = |((direction, _), file): (&(&str, &str), &std::path::PathBuf)| {
+            format!("(direction: {direction}, record: (file: {file:?}))")
+        };
+        let shaking: Vec<String> = records.iter().zip(&files).map(record).collect();
         let cube = |k: usize| {
             format!(
                 "(name: \"cube_{k}\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), at_m: (0, 0, {k}))"
@@ -258,14 +342,15 @@ mod tests {
             "(title: \"t\", time: (step_s: 1e-3, end_s: 1.5), gravity_m_s2: ({down_x}, 0, -{down_z}),
              materials: [(name: \"rock\", young_pa: 2e10, poisson: 0.25, density_kg_m3: 2500)],
              blocks: [(name: \"base\", material: \"rock\", body: Fixed, shape: Box(size_m: (4, 3, 1), cells: (2, 1, 1)), at_m: (-2, -1, -1)), {}],
-             supports: [(block: \"base\", on: All, hold: Shaking([(direction: (1, 0, 0), record: (file: {record:?}))]))],
+             supports: [(block: \"base\", on: All, hold: Shaking([{}]))],
              contact: Potential(penalty_pa: {PENALTY_PA}, potential: Smooth(reference_m: 1), friction: (friction_deg: 60)))",
-            cubes.join(", ")
+            cubes.join(", "),
+            shaking.join(", ")
         );
         let loaded = ndda_io::read::load_text("t.ron", &text, &[], None).unwrap();
         let scene = loaded.scene.clone();
         let found = worst(&scene, &Model::new(loaded, std::path::Path::new(".")).unwrap().simulation);
-        std::fs::remove_file(record).unwrap();
+        files.iter().for_each(|file| std::fs::remove_file(file).unwrap());
         found
     }
 
@@ -290,17 +375,46 @@ mod tests {
         }
     }
 
-    /// Down a slope of 31° a cube rocks from g tan(45° − 31°) = 2.49 m/s² on, which the base exceeds; up it from g tan(45° + 31°) = 40 m/s², of which penetration
+    /// Down a slope of 31° a cube rocks from g (cos 31° − sin 31°) = 3.42 m/s² on, which the base exceeds; up it from 13.7 m/s² on, of which penetration
     /// takes more, but which no base reaches.
     #[test]
     fn a_direction_in_which_it_rocks_only_far_above_the_peak_hides_none_in_which_it_does() {
-        let found = shaken_on_a_slope(1, 31.0).unwrap();
-        assert!((found.rigid_m_s2 / (10.0 * 14f64.to_radians().tan()) - 1.0).abs() < 1e-9, "{found:?}");
-        assert!(found.is_doubtful(), "{found:?}");
+        let on_a_slope = |slope_deg: f64, rows: &str| {
+            let (sin, cos) = slope_deg.to_radians().sin_cos();
+            let found = shaken_by(1, (10.0 * sin, 10.0 * cos), &[("(1, 0, 0)", rows)]).unwrap();
+            (found.rigid_m_s2 / (10.0 * (cos - sin)), found)
+        };
+        let (ratio, found) = on_a_slope(31.0, "0,0\n0.5,4\n1,-4\n1.5,0\n");
+        assert!((ratio - 1.0).abs() < 1e-9 && found.is_doubtful(), "{found:?}");
         // Where it rocks in neither, the one is named that comes first.
-        let found = shaken_on_a_slope(1, 10.0).unwrap();
-        assert!((found.rigid_m_s2 / (10.0 * 35f64.to_radians().tan()) - 1.0).abs() < 1e-9, "{found:?}");
+        let (ratio, found) = on_a_slope(10.0, "0,0\n0.5,4\n1,-4\n1.5,0\n");
+        assert!((ratio - 1.0).abs() < 1e-9 && !found.is_doubtful(), "{found:?}");
+        // A base that accelerates by as much in the other direction only does not reach it.
+        let found = on_a_slope(31.0, "0,0\n0.5,4\n1.5,0\n").1;
         assert!(!found.is_doubtful(), "{found:?}");
+    }
+
+    #[test]
+    fn components_of_a_record_and_vertical_motion_count_together() {
+        let alone = |rows: &str| format!("0,0\n0.5,{rows}\n1,0\n");
+        let (six, four, minus_four) = (alone("6"), alone("4"), alone("-4"));
+        // 30° from an axis the edge across that is reached at g tan/cos 30°.
+        let found = shaken_by(1, (0.0, 10.0), &[("(0.866025403784, 0.5, 0)", &six)]).unwrap();
+        assert!((found.rigid_m_s2 / (10.0 / 30_f64.to_radians().cos()) - 1.0).abs() < 1e-9, "{found:?}");
+        assert!((found.peak_m_s2 - 6.0).abs() < 1e-9, "{found:?}");
+        // Two of 4 m/s² at once, but not one after the other.
+        let found = shaken_by(1, (0.0, 10.0), &[("(1, 0, 0)", &four), ("(0, 1, 0)", &four)]).unwrap();
+        assert!((found.rigid_m_s2 / (10.0 * 2_f64.sqrt()) - 1.0).abs() < 1e-9, "{found:?}");
+        assert!((found.peak_m_s2 - 32_f64.sqrt()).abs() < 1e-9, "{found:?}");
+        let later = "0.5,0\n1,4\n1.5,0\n";
+        let found = shaken_by(1, (0.0, 10.0), &[("(1, 0, 0)", &alone("4")), ("(0, 1, 0)", later)]).unwrap();
+        assert!((found.peak_m_s2 - 4.0).abs() < 1e-9, "{found:?}");
+        // A base that falls presses less: a cube rocks where a_x = g − a_z, so that both are 5 m/s².
+        for (vertical, rigid_m_s2) in [(&minus_four, 10.0 / (1.0 + 4.0 / 6.0)), (&four, 30.0)] {
+            let found = shaken_by(1, (0.0, 10.0), &[("(1, 0, 0)", &six), ("(0, 0, 1)", vertical)]).unwrap();
+            let rigid_m_s2 = rigid_m_s2 * (1.0 + (4.0 / 6.0_f64).powi(2)).sqrt();
+            assert!((found.rigid_m_s2 / rigid_m_s2 - 1.0).abs() < 1e-9, "{found:?}, {rigid_m_s2}");
+        }
     }
 
     #[test]

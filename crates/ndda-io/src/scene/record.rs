@@ -112,7 +112,7 @@ impl Prepared {
     /// # Errors
     /// [`RecordError`] naming file and row.
     pub fn as_written(file: &Path) -> Result<Self, RecordError> {
-        let rows = csv(file, &bytes_of(file)?, ACCELERATION)?;
+        let rows = csv(file, &bytes_of(file)?, ACCELERATION, "name the one of accelerations so")?;
         let told = format!("{}: {} rows; peak {:.4} m/s²", file.display(), rows.len(), peak_m_s2(&rows));
         Ok(Self { gap: Gap::longest_in(&rows), rows, told })
     }
@@ -201,17 +201,23 @@ fn uneven(rows: &[(f64, f64)]) -> Option<f64> {
 fn raw(file: &Path, column: Option<&str>) -> Result<(Rows, Option<AccelerationUnit>), RecordError> {
     let bytes = bytes_of(file)?;
     if file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("at2")) {
+        if column.is_some() {
+            let fault =
+                "`column` names one of a CSV file, and an .at2 file has none: leave it out".to_string();
+            return Err(RecordError::Table { file: file.to_path_buf(), fault });
+        }
         return at2::parse(file, &String::from_utf8_lossy(&bytes));
     }
-    Ok((csv(file, &bytes, column.unwrap_or(ACCELERATION))?, None))
+    let cure = "give the one of accelerations as `column`";
+    Ok((csv(file, &bytes, column.unwrap_or(ACCELERATION), cure)?, None))
 }
 
 fn bytes_of(file: &Path) -> Result<Vec<u8>, RecordError> {
     limited::file(file).map_err(|source| RecordError::Unreadable { file: file.to_path_buf(), source })
 }
 
-/// The column `time_s` and another one of a CSV file.
-fn csv(file: &Path, bytes: &[u8], column: &str) -> Result<Vec<(f64, f64)>, RecordError> {
+/// The column `time_s` and another one of a CSV file; what to do where that one is missing is `cure`.
+fn csv(file: &Path, bytes: &[u8], column: &str, cure: &str) -> Result<Vec<(f64, f64)>, RecordError> {
     let table = |fault| RecordError::Table { file: file.to_path_buf(), fault };
     let broken = |error| table(csv_text::in_words(&error));
     let mut reader = csv_text::reader(bytes);
@@ -227,7 +233,8 @@ fn csv(file: &Path, bytes: &[u8], column: &str) -> Result<Vec<(f64, f64)>, Recor
     let place = |name: &str| {
         let known = header.iter().collect::<Vec<_>>().join(", ");
         let found = header.iter().position(|column| column == name);
-        found.ok_or_else(|| table(format!("there is no column `{name}`; the first line names {known}")))
+        let cure = if name == TIME { String::new() } else { format!(": {cure}") };
+        found.ok_or_else(|| table(format!("there is no column `{name}`; the first line names {known}{cure}")))
     };
     let places = [place(TIME)?, place(column)?];
     let mut rows: Vec<(f64, f64)> = Vec::new();

@@ -116,7 +116,12 @@ fn penalty(scene: &Scene, simulation: &Simulation, penalty_pa: f64, potential: &
         r if r > HARD => "stiff for this rock: steps have to be short, and nothing is gained",
         _ => return None,
     };
-    let advised = match choose::resting(scene, simulation.blocks()) {
+    let resting = choose::resting(scene, simulation.blocks());
+    let enough_pa = resting.as_ref().map_or(1e-2 * stiffest_pa, |resting| resting.penalty_pa);
+    if ratio > HARD && is_soft_at_edges(scene, simulation, enough_pa) {
+        return None;
+    }
+    let advised = match resting {
         Some(resting) => {
             format!("{:.0e} suits this scene; it is chosen if penalty_pa is left out", resting.penalty_pa)
         }
@@ -125,4 +130,14 @@ fn penalty(scene: &Scene, simulation: &Simulation, penalty_pa: f64, potential: &
     Some(format!(
         "contact is very {what} (penalty_pa over the reference length is {ratio:.0e} of Young's modulus per metre); a penalty_pa of {advised}"
     ))
+}
+
+/// Whether blocks lean or rock by too much with another penalty.
+fn is_soft_at_edges(scene: &Scene, simulation: &Simulation, other_pa: f64) -> bool {
+    let mut softer = scene.clone();
+    if let Some(Contact::Potential { penalty_pa, .. }) = &mut softer.contact {
+        *penalty_pa = other_pa;
+    }
+    lean::worst(&softer, simulation).is_some()
+        || rocking::worst(&softer, simulation).is_some_and(|rocking| rocking.is_doubtful())
 }

@@ -119,7 +119,7 @@ fn own_s(summary: &Summary) -> f64 {
 pub fn stage(end: &StageEnd) -> String {
     let how = match end.settling_steps {
         0 => String::new(),
-        steps => format!(", at rest after {steps} steps more"),
+        steps => format!(", at rest after {} more", counted(steps as usize, "step", "steps")),
     };
     let motion =
         if end.motion.can_move > 0 { format!("; {}", moved(&end.motion).trim_end()) } else { String::new() };
