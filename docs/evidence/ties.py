@@ -57,7 +57,12 @@ def main():
     given = parser.parse_args()
     rows = [row for row in claims.ties() if given.night or row["when"] != "night"]
     rows = [row for row in rows if given.only in row["page"] or given.only in row["source"]]
-    sources, found, faults = Sources(given.ndda.absolute()), [], []
+    sources, found = Sources(given.ndda.absolute()), []
+    # Rows that are not compared now must still be found in their pages.
+    others = [row for row in claims.ties() if row not in rows]
+    faults = [there for there in map(claims.place, others) if isinstance(there, str)]
+    for fault in faults:
+        print(fault, flush=True)
     for row in rows:
         result, fault = compare(row, sources, given.write)
         found.append(result)
@@ -67,7 +72,7 @@ def main():
     if given.night and not given.only:
         keep(found)
     if faults:
-        sys.exit(f"{len(faults)} of {len(rows)} numbers are not those of their sources")
+        sys.exit(f"{len(faults)} numbers are not those of their sources")
     print(f"{len(rows)} numbers are those of their sources")
 
 
