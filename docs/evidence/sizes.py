@@ -5,7 +5,7 @@
 
 Runs scenes/extreme/blocks.ron and one_block.ron on one thread at each size and writes docs/evidence/sizes/sizes.csv: processor time of
 the whole run, set-up included, peak memory, and both per tetrahedron. Prints the slope of time and memory over tetrahedra in
-log-log, between each size and the next. The largest of all, 1e5 blocks, wants 3 GB and some minutes.
+log-log, between each size and the next. The largest of all, 1e5 blocks, wants 1.5 GB and some minutes.
 """
 import argparse
 import csv
