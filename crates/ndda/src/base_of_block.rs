@@ -50,7 +50,7 @@ pub struct Base {
     pub on: Vec<BlockId>,
 }
 
-/// The resultant force on a base, and the edge that it is nearest to.
+/// The resultant force on a base, and one of its edges.
 pub struct Pressed {
     /// Part of the force across the base [N].
     pub normal_n: f64,
@@ -128,22 +128,27 @@ impl Base {
         Some(Self { points: hull(points), origin, axes, on })
     }
 
-    /// The force on the base and the distance of its line from the nearest edge; none where they pull, or where their line meets it outside.
+    /// The force on the base and the distance of its line from each edge; none where they pull, or where their line meets it outside.
     ///
     /// With heights h_i, places s_i, normal parts N_i and tangential parts T_i of the forces, the line meets the base at Σ (N_i s_i + h_i T_i)/N.
     /// A tilt of one radian about the edge with the outward direction e there moves that along e by Σ (N_i h_i − (s_i·e)(T_i·e))/N.
-    pub fn pressed(&self, pulls: &[Pull]) -> Option<Pressed> {
+    pub fn pressed(&self, pulls: &[Pull]) -> Vec<Pressed> {
         let (normal_n, foot) = self.resultant(pulls);
-        let (inside_m, along, [width_m, across_m]) = self.inside(&foot)?;
-        let arm_m = self.arm(pulls, (normal_n, &foot), &Vec3::new(along.y, -along.x, 0.0));
-        (normal_n > 0.0 && arm_m > 0.0).then_some(Pressed { normal_n, inside_m, width_m, across_m, arm_m })
+        let press = |(inside_m, along, [width_m, across_m]): (f64, Vec3, [f64; 2])| {
+            let arm_m = self.arm(pulls, (normal_n, &foot), &Vec3::new(along.y, -along.x, 0.0));
+            Pressed { normal_n, inside_m, width_m, across_m, arm_m }
+        };
+        let all = self.inside(&foot).into_iter().map(press);
+        all.filter(|pressed| pressed.normal_n > 0.0 && pressed.arm_m > 0.0).collect()
     }
 
     /// Part of the way from its foot to the rim, straight away from the middle of the base, that a force moves by as contact gives way, and that way [m]; all of it where
     /// the block falls. At a corner a triangle bears, where at an edge a strip does. `soft_m_pa` is L₀/k_n.
     pub fn moved_outwards(&self, pulls: &[Pull], soft_m_pa: f64) -> Option<(f64, f64)> {
         let (normal_n, foot) = self.resultant(pulls);
-        self.inside(&foot)?;
+        if self.inside(&foot).is_empty() {
+            return None;
+        }
         let out = (foot - self.middle()).try_normalize(0.0)?;
         let arm_m = self.arm(pulls, (normal_n, &foot), &out);
         if normal_n <= 0.0 || arm_m <= 0.0 {
@@ -234,22 +239,23 @@ impl Base {
         ways.fold(f64::INFINITY, f64::min)
     }
 
-    /// Distance of a foot from the nearest edge, the direction of that, and the extents of the base along and across it [m]; none where it lies outside.
-    fn inside(&self, foot: &Vec3) -> Option<(f64, Vec3, [f64; 2])> {
+    /// Distance of a foot from each edge, the direction of that, and the extents of the base along and across it [m]; none where it lies outside.
+    fn inside(&self, foot: &Vec3) -> Vec<(f64, Vec3, [f64; 2])> {
         let corners = &self.points;
-        let edges = (0..corners.len()).map(|k| (corners[k], corners[(k + 1) % corners.len()]));
-        let distance = |(a, b): ([f64; 2], [f64; 2])| {
-            let along = Vec3::new(b[0] - a[0], b[1] - a[1], 0.0);
-            (turn(&a, &b, &[foot.x, foot.y]) / along.norm(), along.normalize())
-        };
-        let (inside_m, along) = edges.map(distance).min_by(|a, b| a.0.total_cmp(&b.0))?;
         let extent = |axis: Vec3| {
             let places = corners.iter().map(|x| axis.x * x[0] + axis.y * x[1]);
             places.clone().fold(f64::MIN, f64::max) - places.fold(f64::MAX, f64::min)
         };
-        let (width_m, across_m) = (extent(along), extent(Vec3::new(-along.y, along.x, 0.0)));
-        let is_inside = corners.len() > 2 && inside_m > AT_THE_EDGE * across_m;
-        is_inside.then_some((inside_m, along, [width_m, across_m]))
+        let from_edge = |k: usize| {
+            let [a, b] = [k, k + 1].map(|at| corners[at % corners.len()]);
+            let way = Vec3::new(b[0] - a[0], b[1] - a[1], 0.0);
+            let (inside_m, along) = (turn(&a, &b, &[foot.x, foot.y]) / way.norm(), way.normalize());
+            (inside_m, along, [extent(along), extent(Vec3::new(-along.y, along.x, 0.0))])
+        };
+        let all: Vec<(f64, Vec3, [f64; 2])> = (0..corners.len()).map(from_edge).collect();
+        let is_inside =
+            |(inside_m, _, [_, across_m]): &(f64, Vec3, [f64; 2])| *inside_m > AT_THE_EDGE * across_m;
+        if corners.len() > 2 && all.iter().all(is_inside) { all } else { Vec::new() }
     }
 }
 

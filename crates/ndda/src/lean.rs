@@ -119,8 +119,10 @@ pub fn worst(scene: &Scene, simulation: &Simulation) -> Option<Lean> {
         let stack = with_all_on_it(&bases, *block).unwrap_or_else(|| vec![*block]);
         let soft_m_pa = reference_m / penalty_pa;
         let leans = pulls(scene, simulation, &stack).into_iter().filter_map(|pulls| {
-            let pressed = base.pressed(&pulls)?;
-            let (inside_m, (moved, m)) = (pressed.inside_m, moved(pressed, soft_m_pa));
+            let edges = base.pressed(&pulls).into_iter();
+            let over_edges = edges.map(|pressed| (pressed.inside_m, moved(pressed, soft_m_pa)));
+            let (inside_m, (moved, m)) =
+                over_edges.max_by(|(_, a), (_, b)| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)))?;
             match base.moved_outwards(&pulls, soft_m_pa) {
                 Some((farther, way_m)) if farther > 1.05 * moved => Some((farther, m, way_m, Some(pulls))),
                 _ => Some((moved, m, inside_m, None)),
@@ -314,6 +316,18 @@ mod tests {
         assert!(at(0.105).unwrap().moved < 0.3 && at(0.106).unwrap().moved == 1.0);
         let advised = leaning(&text(at(0.106).unwrap().penalty_pa, 9.81 * tangent, column, ""));
         assert!(advised.is_none(), "{advised:?}");
+    }
+
+    /// A slab of 2 × 1 × 1 m whose weight acts 0.18 m inside a long edge and 0.2 m inside a short one, over which it moves more.
+    #[test]
+    fn the_edge_over_which_a_weight_moves_most_need_not_be_the_nearest() {
+        let slab = "(name: \"slab\", material: \"rock\", body: Rigid, shape: Box(size_m: (2, 1, 1), cells: (1, 1, 1)))";
+        let weight_n = 2500.0 * 2.0 * 9.81;
+        let force = format!("(block: \"slab\", force_n: ({}, {}, 0))", 1.6 * weight_n, 0.64 * weight_n);
+        let [short, long] = [(0.5 + 1.6 * 0.8, 1.0, 0.2_f64), (0.5 + 0.64 * 0.32, 2.0, 0.18)]
+            .map(|(arm_m, width_m, inside_m)| weight_n * arm_m / (9.0 * width_m * inside_m.powi(3)));
+        let lean = leaning(&text(short / 0.1, 0.0, slab, &force)).unwrap();
+        assert!(long / short < 0.3 && lean.moved >= 1.0 - left(0.1) - 1e-6, "{lean:?}");
     }
 
     #[test]
