@@ -65,6 +65,7 @@ mod release_of_initial_stress;
 mod restitution;
 mod rockfall;
 mod rocking_block;
+mod rocking_threshold;
 mod roof_wedge;
 mod safety_as_drawn;
 mod safety_factor;
