@@ -55,12 +55,12 @@ def main():
     parser.add_argument("--only", default="")
     parser.add_argument("ndda", nargs="?", default=ROOT / "target" / "release" / "ndda", type=Path)
     given = parser.parse_args()
-    rows = [row for row in claims.ties() if given.night or row["when"] != "night"]
+    every = claims.ties()
+    rows = [row for row in every if given.night or row["when"] != "night"]
     rows = [row for row in rows if given.only in row["page"] or given.only in row["source"]]
     sources, found = Sources(given.ndda.absolute()), []
     # Rows that are not compared now must still be found in their pages.
-    others = [row for row in claims.ties() if row not in rows]
-    faults = [there for there in map(claims.place, others) if isinstance(there, str)]
+    faults = [there for row in every if row not in rows and isinstance(there := claims.place(row), str)]
     for fault in faults:
         print(fault, flush=True)
     for row in rows:

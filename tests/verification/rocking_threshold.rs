@@ -1,5 +1,5 @@
-//! A cube on a base that accelerates begins to rock where `ndda check` says, whatever way the base goes: under steady acceleration a of its base it stands as it does
-//! under gravity g − a, and where it stops to come to rest under that is found by halving.
+//! A cube on a base that accelerates begins to rock where `ndda check` says, in whatever direction the base moves. On a base with a steady acceleration a it stands as it does
+//! under gravity g − a; the largest a under which it still comes to rest is found by halving.
 
 use ndda::rocking;
 use ndda_mesh::Vec3;
@@ -26,7 +26,7 @@ fn text(gravity_m_s2: Vec3, supports: &str) -> String {
     )
 }
 
-/// The acceleration from which on the cube rocks on a base that a record moves in a direction [m/s²], as `ndda check` says.
+/// The acceleration at which the cube begins to rock on a base that a record moves in a direction [m/s²], as `ndda check` says.
 fn foreseen(direction: Vec3) -> f64 {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("record.csv"), "time_s,acceleration_m_s2\n0,0\n1,5\n2,0\n").unwrap();
@@ -47,12 +47,12 @@ fn stands(acceleration: Vec3) -> bool {
 }
 
 #[test]
-fn a_cube_begins_to_rock_where_the_check_says_whatever_way_its_base_goes() {
+fn a_cube_begins_to_rock_where_the_check_says_in_whatever_direction_its_base_moves() {
     for (name, direction) in [
         ("straight across an edge", Vec3::new(1.0, 0.0, 0.0)),
-        ("22.5° askew", Vec3::new(22.5_f64.to_radians().cos(), 22.5_f64.to_radians().sin(), 0.0)),
+        ("obliquely by 22.5°", Vec3::new(22.5_f64.to_radians().cos(), 22.5_f64.to_radians().sin(), 0.0)),
         ("over a corner", Vec3::new(0.5_f64.sqrt(), 0.5_f64.sqrt(), 0.0)),
-        ("30° askew and downwards", Vec3::new(0.75_f64.sqrt(), 0.5, -0.5).normalize()),
+        ("obliquely by 30° and downwards", Vec3::new(0.75_f64.sqrt(), 0.5, -0.5).normalize()),
     ] {
         let rocks_at = foreseen(direction);
         let (mut low, mut high) = (0.9 * rocks_at, 1.1 * rocks_at);
@@ -61,8 +61,8 @@ fn a_cube_begins_to_rock_where_the_check_says_whatever_way_its_base_goes() {
             let middle = 0.5 * (low + high);
             if stands(middle * direction) { low = middle } else { high = middle }
         }
-        let name = format!("acceleration from which on a cube rocks, {name} [m/s²]");
-        // A third of what the label lets penetration take. Askew, pressures tilt about two axes; the check takes them across one.
+        let name = format!("acceleration at which a cube begins to rock, {name} [m/s²]");
+        // A third of what the label lets penetration take. Under oblique motion the base tilts about two axes; the check lets it tilt about one.
         row("rocking threshold", &name, low, Within(rocks_at, 0.02));
     }
 }

@@ -183,26 +183,30 @@ impl Base {
 
     /// Directions straight over each of its edges, and over its corners midway between those; none where it is no area.
     pub fn outwards(&self) -> Vec<Vec3> {
-        let corners = &self.points;
-        if corners.len() < 3 {
+        if self.points.len() < 3 {
             return Vec::new();
         }
-        let over = |k: usize| {
-            let [a, b] = [k, k + 1].map(|at| corners[at % corners.len()]);
-            Vec3::new(b[1] - a[1], a[0] - b[0], 0.0).normalize()
-        };
-        (0..corners.len()).flat_map(|k| [over(k), (over(k) + over(k + 1)).normalize()]).collect()
+        let over: Vec<Vec3> =
+            self.edges().map(|(a, b)| Vec3::new(b[1] - a[1], a[0] - b[0], 0.0).normalize()).collect();
+        let next = over.iter().cycle().skip(1);
+        over.iter().zip(next).flat_map(|(one, next)| [*one, (one + next).normalize()]).collect()
+    }
+
+    /// The two corners of each edge, counter-clockwise.
+    fn edges(&self) -> impl Iterator<Item = ([f64; 2], [f64; 2])> + '_ {
+        let next = self.points.iter().cycle().skip(1);
+        self.points.iter().copied().zip(next.copied())
     }
 
     /// N, and where the line of the forces meets the base.
-    fn resultant(&self, pulls: &[Pull]) -> (f64, Vec3) {
+    pub fn resultant(&self, pulls: &[Pull]) -> (f64, Vec3) {
         let normal_n: f64 = pulls.iter().map(|(_, f)| f.dot(&self.axes[2])).sum();
         let foot = self.parts(pulls).map(|(s, h, n, t)| n * s + h * t).sum::<Vec3>() / normal_n;
         (normal_n, foot)
     }
 
     /// How far the foot moves along a direction of the base for a tilt of one radian [m].
-    fn arm(&self, pulls: &[Pull], (normal_n, foot): (f64, &Vec3), out: &Vec3) -> f64 {
+    pub fn arm(&self, pulls: &[Pull], (normal_n, foot): (f64, &Vec3), out: &Vec3) -> f64 {
         let arm = |(s, h, n, t): (Vec3, f64, f64, Vec3)| n * h - (s - foot).dot(out) * t.dot(out);
         self.parts(pulls).map(arm).sum::<f64>() / normal_n
     }
@@ -230,9 +234,7 @@ impl Base {
 
     /// From a point inside along a direction to the rim [m].
     fn way_to_rim(&self, from: &Vec3, along: &Vec3) -> f64 {
-        let corners = &self.points;
-        let edges = (0..corners.len()).map(|k| (corners[k], corners[(k + 1) % corners.len()]));
-        let ways = edges.filter_map(|(a, b)| {
+        let ways = self.edges().filter_map(|(a, b)| {
             let outwards = along.x * (b[1] - a[1]) - along.y * (b[0] - a[0]);
             (outwards > 0.0).then(|| turn(&a, &b, &[from.x, from.y]) / outwards)
         });
@@ -246,13 +248,12 @@ impl Base {
             let places = corners.iter().map(|x| axis.x * x[0] + axis.y * x[1]);
             places.clone().fold(f64::MIN, f64::max) - places.fold(f64::MAX, f64::min)
         };
-        let from_edge = |k: usize| {
-            let [a, b] = [k, k + 1].map(|at| corners[at % corners.len()]);
+        let from_edge = |(a, b): ([f64; 2], [f64; 2])| {
             let way = Vec3::new(b[0] - a[0], b[1] - a[1], 0.0);
             let (inside_m, along) = (turn(&a, &b, &[foot.x, foot.y]) / way.norm(), way.normalize());
             (inside_m, along, [extent(along), extent(Vec3::new(-along.y, along.x, 0.0))])
         };
-        let all: Vec<(f64, Vec3, [f64; 2])> = (0..corners.len()).map(from_edge).collect();
+        let all: Vec<(f64, Vec3, [f64; 2])> = self.edges().map(from_edge).collect();
         let is_inside =
             |(inside_m, _, [_, across_m]): &(f64, Vec3, [f64; 2])| *inside_m > AT_THE_EDGE * across_m;
         if corners.len() > 2 && all.iter().all(is_inside) { all } else { Vec::new() }

@@ -36,9 +36,9 @@ pub struct Rocking {
     pub block: String,
     /// Blocks that rest on it.
     pub blocks_on_it: usize,
-    /// Acceleration of the base at the instant that is looked at, all records together [m/s²].
+    /// Acceleration of the base at the instant that brings the block nearest to rocking, all records together [m/s²].
     pub peak_m_s2: f64,
-    /// Acceleration in its direction from which on it rocks [m/s²].
+    /// Acceleration in that direction at which it begins to rock [m/s²].
     pub rocks_at_m_s2: f64,
     /// The same on an edge that does not give way [m/s²].
     pub rigid_m_s2: f64,
@@ -96,10 +96,13 @@ pub fn worst(scene: &Scene, simulation: &Simulation) -> Option<Rocking> {
     };
     let (gravity, blocks) = (Vec3::from(scene.gravity_m_s2), simulation.blocks());
     gravity.try_normalize(0.0)?;
-    let accelerations = accelerations(simulation);
     let free: Vec<BlockId> =
         blocks.ids().filter(|block| simulation.shape(*block).kind != BodyKind::Fixed).collect();
-    if accelerations.is_empty() || free.len() > MOST_BLOCKS {
+    if free.len() > MOST_BLOCKS {
+        return None;
+    }
+    let accelerations = accelerations(simulation);
+    if accelerations.is_empty() {
         return None;
     }
     let bases: Vec<(BlockId, Base)> =
@@ -138,7 +141,7 @@ struct Found<'a> {
     stack: Stack<'a>,
     /// Acceleration of the base [m/s²].
     peak: Vec3,
-    /// Accelerations along it from which on it rocks, and would on rigid edges [m/s²].
+    /// Accelerations in that direction at which it begins to rock, and would on rigid edges [m/s²].
     at: [f64; 2],
     block: &'a BlockId,
 }
@@ -270,7 +273,7 @@ mod tests {
     fn components_of_a_record_and_vertical_motion_count_together() {
         let alone = |rows: &str| format!("0,0\n0.5,{rows}\n1,0\n");
         let (six, four, minus_four) = (alone("6"), alone("4"), alone("-4"));
-        // 30° from an axis the edge across that is reached at g tan/cos 30°.
+        // 30° from an axis, the foot reaches the edge across that axis at g/cos 30°.
         let found = shaken_by(1, (0.0, 10.0), &[("(0.866025403784, 0.5, 0)", &six)]).unwrap();
         assert!((found.rigid_m_s2 / (10.0 / 30_f64.to_radians().cos()) - 1.0).abs() < 1e-9, "{found:?}");
         assert!((found.peak_m_s2 - 6.0).abs() < 1e-9, "{found:?}");
@@ -281,7 +284,7 @@ mod tests {
         let later = "0.5,0\n1,4\n1.5,0\n";
         let found = shaken_by(1, (0.0, 10.0), &[("(1, 0, 0)", &alone("4")), ("(0, 1, 0)", later)]).unwrap();
         assert!((found.peak_m_s2 - 4.0).abs() < 1e-9, "{found:?}");
-        // A base that falls presses less: a cube rocks where a_x = g − a_z, so that both are 5 m/s².
+        // A cube rocks where a_x = g + a_z: at 6 m/s² for a_z = −⅔ a_x, since a base that falls presses less, at 30 m/s² for a_z = ⅔ a_x.
         for (vertical, rigid_m_s2) in [(&minus_four, 10.0 / (1.0 + 4.0 / 6.0)), (&four, 30.0)] {
             let found = shaken_by(1, (0.0, 10.0), &[("(1, 0, 0)", &six), ("(0, 0, 1)", vertical)]).unwrap();
             let rigid_m_s2 = rigid_m_s2 * (1.0 + (4.0 / 6.0_f64).powi(2)).sqrt();

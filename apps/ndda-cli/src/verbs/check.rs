@@ -24,14 +24,14 @@ pub fn check(args: &CheckArgs) -> u8 {
         Ok(model) => model,
         Err(code) => return code,
     };
-    let loaded = &model.loaded;
+    let (loaded, scene) = (&model.loaded, &model.loaded.scene);
     input::warn(loaded, events);
-    let advice = step::advise(&loaded.scene, &mut model.simulation);
-    let doubts = doubts::doubts(&loaded.scene, &model.simulation, advice.as_ref(), &model.folder);
+    let advice = step::advise(scene, &mut model.simulation);
+    let rocking = rocking::worst(scene, &model.simulation);
+    let doubts = doubts::doubts(scene, &model.simulation, advice.as_ref(), rocking.as_ref(), &model.folder);
     doubts.iter().for_each(|doubt| events.warn(doubt));
-    let guess = cost::guess(&loaded.scene, &mut model.simulation);
     let file = input::file(&args.input);
-    let guess = match guess {
+    let guess = match cost::guess(scene, &mut model.simulation) {
         Ok(guess) => guess,
         Err(error) => {
             return events.fail(exit::STOPPED, &format!("the run would stop in its first steps: {error}"));
@@ -50,8 +50,8 @@ pub fn check(args: &CheckArgs) -> u8 {
         advised_step_s: advice.as_ref().map(|advice| advice.step_s),
         contact_stability: advice.as_ref(),
         chosen: &loaded.chosen,
-        records: &build::records(&loaded.scene, file.parent().unwrap_or(Path::new(""))),
-        rocking: rocking::worst(&loaded.scene, simulation),
+        records: &build::records(scene, file.parent().unwrap_or(Path::new(""))),
+        rocking,
         rock: &model.rock,
         bolts: BoltReports::new(simulation),
         guess,

@@ -112,7 +112,8 @@ impl Prepared {
     /// # Errors
     /// [`RecordError`] naming file and row.
     pub fn as_written(file: &Path) -> Result<Self, RecordError> {
-        let rows = csv(file, &bytes_of(file)?, ACCELERATION, "name the one of accelerations so")?;
+        let rows =
+            csv(file, &bytes_of(file)?, ACCELERATION, "give that name to the column of accelerations")?;
         let told = format!("{}: {} rows; peak {:.4} m/s²", file.display(), rows.len(), peak_m_s2(&rows));
         Ok(Self { gap: Gap::longest_in(&rows), rows, told })
     }
@@ -202,13 +203,12 @@ fn raw(file: &Path, column: Option<&str>) -> Result<(Rows, Option<AccelerationUn
     let bytes = bytes_of(file)?;
     if file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("at2")) {
         if column.is_some() {
-            let fault =
-                "`column` names one of a CSV file, and an .at2 file has none: leave it out".to_string();
+            let fault = "an .at2 file has no columns: leave `column` out".to_string();
             return Err(RecordError::Table { file: file.to_path_buf(), fault });
         }
         return at2::parse(file, &String::from_utf8_lossy(&bytes));
     }
-    let cure = "give the one of accelerations as `column`";
+    let cure = "set `column` to the one that holds accelerations";
     Ok((csv(file, &bytes, column.unwrap_or(ACCELERATION), cure)?, None))
 }
 
@@ -216,7 +216,7 @@ fn bytes_of(file: &Path) -> Result<Vec<u8>, RecordError> {
     limited::file(file).map_err(|source| RecordError::Unreadable { file: file.to_path_buf(), source })
 }
 
-/// The column `time_s` and another one of a CSV file; what to do where that one is missing is `cure`.
+/// The column `time_s` and another one of a CSV file; `cure` says what to do where that other one is missing.
 fn csv(file: &Path, bytes: &[u8], column: &str, cure: &str) -> Result<Vec<(f64, f64)>, RecordError> {
     let table = |fault| RecordError::Table { file: file.to_path_buf(), fault };
     let broken = |error| table(csv_text::in_words(&error));

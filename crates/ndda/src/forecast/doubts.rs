@@ -24,8 +24,14 @@ const SOFTEST_PA: f64 = 1e6;
 /// Overlap at rest over the size of blocks from which on it is a doubt.
 pub const DEEP: f64 = 0.05;
 
-/// Doubts about a scene whose files are in `folder`; `advice` is the forecast of its contact.
-pub fn doubts(scene: &Scene, simulation: &Simulation, advice: Option<&Advice>, folder: &Path) -> Vec<String> {
+/// Doubts about a scene whose files are in `folder`; `advice` is the forecast of its contact, `rocking` that of [`rocking::worst`].
+pub fn doubts(
+    scene: &Scene,
+    simulation: &Simulation,
+    advice: Option<&Advice>,
+    rocking: Option<&Rocking>,
+    folder: &Path,
+) -> Vec<String> {
     let unstable = advice.filter(|advice| advice.worst().h > advice.bound).map(ToString::to_string);
     let mut doubts: Vec<String> = unstable.into_iter().collect();
     let coarse = waves::findings(simulation).into_iter().filter(|found| found.value > found.limit);
@@ -48,8 +54,7 @@ pub fn doubts(scene: &Scene, simulation: &Simulation, advice: Option<&Advice>, f
         );
     }
     doubts.extend(lean::worst(scene, simulation).map(|lean| lean.to_string()));
-    let rocking = rocking::worst(scene, simulation).filter(Rocking::is_doubtful);
-    doubts.extend(rocking.map(|rocking| rocking.to_string()));
+    doubts.extend(rocking.filter(|rocking| rocking.is_doubtful()).map(Rocking::to_string));
     // The depth of contact at rest says more than the ratio of two stiffnesses.
     doubts.extend(
         depth(scene, simulation)

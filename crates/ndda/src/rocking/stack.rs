@@ -24,8 +24,8 @@ pub struct Stack<'a> {
 
 /// Where weight and inertia meet the base, along a direction across it.
 struct Foot {
-    /// Acceleration that presses the stack on its base [m/s²].
-    across_m_s2: f64,
+    /// N, which presses the stack on its base [N].
+    normal_n: f64,
     /// Place along the direction, from the base's origin [m].
     foot_m: f64,
     /// How far a tilt moves it on, per radian [m].
@@ -64,8 +64,8 @@ impl<'a> Stack<'a> {
             let left_m = self.base.bearing(&out).most_m - at_rest_m;
             // Part of what is left to the foot that it moves by.
             let demand = |acceleration: &Vec3| {
-                let Foot { across_m_s2, foot_m, .. } = self.foot(&out, acceleration);
-                if across_m_s2 > 0.0 { (foot_m - at_rest_m) / left_m } else { f64::INFINITY }
+                let Foot { normal_n, foot_m, .. } = self.foot(&out, acceleration);
+                if normal_n > 0.0 { (foot_m - at_rest_m) / left_m } else { f64::INFINITY }
             };
             let demands = accelerations.iter().map(|acceleration| (demand(acceleration), *acceleration));
             demands.max_by(|a, b| a.0.total_cmp(&b.0))
@@ -110,21 +110,15 @@ impl<'a> Stack<'a> {
 
     /// Where weight and inertia meet the base as it accelerates, along a direction across it.
     fn foot(&self, out: &Vec3, acceleration: &Vec3) -> Foot {
-        let [one, two, normal] = &self.base.axes;
-        let flat = |v: &Vec3| Vec3::new(one.dot(v), two.dot(v), 0.0);
-        let field = self.gravity - acceleration;
-        let (across_m_s2, tangential) = (field.dot(normal), flat(&field).dot(out));
-        let height_m = (self.base.origin - self.centre).dot(normal);
-        let place_m = flat(&(self.centre - self.base.origin)).dot(out);
-        let foot_m = place_m + height_m * tangential / across_m_s2;
-        let arm_m = height_m - (place_m - foot_m) * tangential / across_m_s2;
-        Foot { across_m_s2, foot_m, arm_m }
+        let pulls = [(self.centre, self.mass_kg * (self.gravity - acceleration))];
+        let (normal_n, foot) = self.base.resultant(&pulls);
+        Foot { normal_n, foot_m: foot.dot(out), arm_m: self.base.arm(&pulls, (normal_n, &foot), out) }
     }
 
     /// Whether a base that accelerates holds it from tipping in a direction.
     fn stands_towards(&self, out: &Vec3, acceleration: &Vec3, soft_per_m: f64) -> bool {
-        let Foot { across_m_s2, foot_m, arm_m } = self.foot(out, acceleration);
-        if across_m_s2 <= 0.0 {
+        let Foot { normal_n, foot_m, arm_m } = self.foot(out, acceleration);
+        if normal_n <= 0.0 {
             return false;
         }
         let bearing = self.base.bearing(out);
@@ -133,7 +127,7 @@ impl<'a> Stack<'a> {
         }
         (0..PLACES).any(|k| {
             let [first, centre_m] = bearing.beyond(f64::from(k));
-            first > 0.0 && centre_m >= foot_m + soft_per_m * self.mass_kg * across_m_s2 / first * arm_m
+            first > 0.0 && centre_m >= foot_m + soft_per_m * normal_n / first * arm_m
         })
     }
 }
