@@ -4,6 +4,10 @@
 //! N L₀/(3 d w k_n) there, so that the column tilts by θ = N L₀/(9 k_n w d²), and its weight, H/2 above the base, moves towards the edge by
 //! θ (1 + tan²α) H/2. With x for what is left of d, x² (1 − x) = M = N H L₀ (1 + tan²α)/(18 k_n w d³), which has an answer up to M = 4/27.
 
+use std::path::Path;
+
+use ndda::Model;
+use ndda::forecast::doubts::doubts;
 use ndda_mesh::{BlockId, Vec3};
 use ndda_solver::{Settle, Simulation};
 
@@ -24,8 +28,12 @@ fn slope() -> f64 {
     (0.5 * WIDTH_M - INSIDE_M) / (0.5 * HEIGHT_M)
 }
 
-/// The column in one piece or in equal ones, on level ground under gravity and forces, with a penalty.
-fn column_under(pieces: usize, gravity_m_s2: [f64; 2], forces: &str, penalty_pa: f64) -> Simulation {
+/// The column in one piece or in equal ones, on level ground under gravity and other loads, with a penalty.
+fn column_under(pieces: usize, gravity_m_s2: [f64; 2], loads: &str, penalty_pa: f64) -> Simulation {
+    simulation(&scene_of(pieces, gravity_m_s2, loads, penalty_pa))
+}
+
+fn scene_of(pieces: usize, gravity_m_s2: [f64; 2], loads: &str, penalty_pa: f64) -> String {
     let [along, up] = gravity_m_s2;
     let height_m = HEIGHT_M / pieces as f64;
     let piece = |k: usize| {
@@ -35,16 +43,16 @@ fn column_under(pieces: usize, gravity_m_s2: [f64; 2], forces: &str, penalty_pa:
         )
     };
     let pieces: String = (0..pieces).map(piece).collect();
-    simulation(&format!(
+    format!(
         "(title: \"column\", time: (step_s: 1e-3, end_s: 1), gravity_m_s2: ({along}, 0, {up}),
           materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: {DENSITY})],
           blocks: [
               (name: \"floor\", material: \"rock\", body: Fixed, shape: Box(size_m: (4, 3, 1), cells: (1, 1, 1)), at_m: (-1, -1, -1)),
               {pieces}
           ],
-          forces: [{forces}],
+          {loads}
           contact: Potential(penalty_pa: {penalty_pa:e}, potential: Smooth(reference_m: 1), friction: (friction_deg: 60)))"
-    ))
+    )
 }
 
 /// The column under tilted gravity, with the penalty of this M.
@@ -156,7 +164,8 @@ fn a_column_that_is_pushed_leans_as_one_under_tilted_gravity() {
     let (at_m, m) = (3.0, 0.1);
     let force_n = weight_n * (0.5 * WIDTH_M - INSIDE_M) / at_m;
     let arm_m = 0.5 * HEIGHT_M + (WIDTH_M - INSIDE_M) * force_n / weight_n;
-    let force = format!("(block: \"column_0\", at_m: (0, 0.5, {at_m}), force_n: ({force_n}, 0, 0))");
+    let force =
+        format!("forces: [(block: \"column_0\", at_m: (0, 0.5, {at_m}), force_n: ({force_n}, 0, 0))],");
     let penalty_pa = weight_n * arm_m / (9.0 * INSIDE_M.powi(3) * m);
     let mut simulation = column_under(1, [0.0, -G], &force, penalty_pa);
     simulation.settle(&Settle::new(1e-6, 100_000)).unwrap();
@@ -167,6 +176,51 @@ fn a_column_that_is_pushed_leans_as_one_under_tilted_gravity() {
         tilt(&simulation, 1),
         Within(exact, 0.02),
     );
+}
+
+/// A traction on the far side acts as a force in its middle: `ndda check` foresees how far the weight moves, and that it falls.
+#[test]
+fn a_column_under_a_traction_leans_and_falls_as_the_check_foresees() {
+    let weight_n = DENSITY * G * HEIGHT_M * WIDTH_M;
+    let force_n = weight_n * (0.5 * WIDTH_M - INSIDE_M) / (0.5 * HEIGHT_M);
+    let arm_m = 0.5 * HEIGHT_M + (WIDTH_M - INSIDE_M) * force_n / weight_n;
+    let traction_pa = force_n / HEIGHT_M;
+    let loads = format!(
+        "tractions: [(block: \"column_0\", on: Set(\"x_min\"), traction_pa: ({traction_pa}, 0, 0))],"
+    );
+    for (m, stands) in [(0.1, true), (1.25 * MOST, false)] {
+        let penalty_pa = weight_n * arm_m / (9.0 * INSIDE_M.powi(3) * m);
+        let loaded =
+            ndda_io::read::load_text("column.ron", &scene_of(1, [0.0, -G], &loads, penalty_pa), &[], None)
+                .unwrap();
+        let scene = loaded.scene.clone();
+        let mut simulation = Model::new(loaded, Path::new(".")).unwrap().simulation;
+        let doubts = doubts(&scene, &simulation, None, None, Path::new("."));
+        let foreseen = match stands {
+            true => format!("moves {:.1} % of the way to the edge", 100.0 * (1.0 - left(m))),
+            false => "the block falls, although a rigid edge would hold it".to_string(),
+        };
+        assert!(doubts.iter().any(|doubt| doubt.contains(&foreseen)), "{foreseen}: {doubts:?}");
+        let settled = simulation.settle(&Settle::new(1e-6, 20_000));
+        assert_eq!(settled.is_ok(), stands, "{settled:?}");
+        let tilt = tilt(&simulation, 1);
+        match stands {
+            true => {
+                let exact = (1.0 - left(m)) * INSIDE_M / arm_m;
+                let name = "tilt of a column under a traction, at M = 0.1 [rad]";
+                row("leaning column", name, tilt, Within(exact, 0.02));
+            }
+            false => {
+                let over = INSIDE_M / (0.5 * HEIGHT_M);
+                row(
+                    "leaning column",
+                    "tilt of a column that a traction pushes over, at M = 0.185 [rad]",
+                    tilt.abs(),
+                    AtLeast(over),
+                );
+            }
+        }
+    }
 }
 
 /// Tilts of equal pieces of the column under tilted gravity [rad], the lowest first, joint by joint until they change no more. The force on a joint meets it where the tilts

@@ -110,7 +110,8 @@ impl Base {
                 .collect(),
         );
         let (mut points, mut on) = (Vec::new(), Vec::new());
-        for other in simulation.blocks().ids().filter(|other| *other != block) {
+        let is_there = |other: &BlockId| *other != block && !simulation.is_absent(*other);
+        for other in simulation.blocks().ids().filter(is_there) {
             for face in faces(simulation, other).filter(|(corners, _)| Aabb::around(corners).touches(&bounds))
             {
                 let Some(plane) = own.iter().find(|plane| is_on(plane, &face)) else { continue };

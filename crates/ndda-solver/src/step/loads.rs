@@ -156,6 +156,24 @@ impl Loads {
         }
     }
 
+    /// Times of the rows of their tables [s]: the last ones, and those of the largest and the least factor that hold for so long [s].
+    pub(crate) fn extremes_s(&self, held_s: f64) -> impl Iterator<Item = f64> {
+        let of_pressures = self.pressures_over_time().map(|(_, factor)| factor);
+        let factors = self.varying.iter().map(|load| &load.factor).chain(of_pressures);
+        factors.flat_map(move |factor| extremes(&factor.rows, held_s)).map(|row| row.0)
+    }
+
+    /// What they are at a time on nodes in some places, per node [N], without what a caller has set and without reactions of quiet faces.
+    pub(crate) fn at(&self, time_s: f64, places: Places) -> Vec<Vec3> {
+        let mut then = self.clone();
+        then.driving.clear();
+        if !then.given.is_empty() {
+            then.constant = std::mem::take(&mut then.given);
+        }
+        then.place(time_s, time_s, places);
+        then.total().to_vec()
+    }
+
     /// Faces of pressures that change over time, and their factors.
     pub(crate) fn pressures_over_time(&self) -> impl Iterator<Item = (&[[u32; 3]], &Table)> {
         self.pressures.iter().filter_map(FollowerPressure::over_time)
@@ -197,6 +215,24 @@ impl Loads {
     }
 }
 
+/// The last row of a table, and those of the largest and the least value among rows that hold for so long [s].
+fn extremes(rows: &[(f64, f64)], held_s: f64) -> impl Iterator<Item = (f64, f64)> {
+    let mut rising: Vec<usize> = (0..rows.len()).collect();
+    rising.sort_by(|a, b| rows[*a].1.total_cmp(&rows[*b].1));
+    let least = rising.iter().find(|row| holds(rows, **row, held_s)).copied();
+    let largest = rising.iter().rev().find(|row| holds(rows, **row, held_s)).copied();
+    least.into_iter().chain(largest).map(|row| rows[row]).chain(rows.last().copied())
+}
+
+/// Whether a table keeps half of its value at a row or more for so long around it [s]. Before its first row and after its last one it stands still for ever.
+fn holds(rows: &[(f64, f64)], row: usize, held_s: f64) -> bool {
+    let value = rows[row].1;
+    let is_less = |(_, other): &&(f64, f64)| other * value.signum() < 0.5 * value.abs();
+    let before_s = rows[..row].iter().rev().find(is_less).map_or(f64::NEG_INFINITY, |row| row.0);
+    let after_s = rows[row..].iter().find(is_less).map_or(f64::INFINITY, |row| row.0);
+    after_s - before_s >= held_s
+}
+
 /// Sum of forces on the nodes of all blocks, and of how large each is.
 fn sum_and_size(forces: &[Vec3], starts: &[u32]) -> (Vec3, f64) {
     let mut sum = ExactVector::default();
@@ -209,10 +245,43 @@ fn sum_and_size(forces: &[Vec3], starts: &[u32]) -> (Vec3, f64) {
 }
 
 impl Simulation {
+    /// Times [s] at which loads are largest or least: the start, and of each table of gravity, tractions, forces and water the last row and those of the largest and
+    /// the least factor that keeps half of its value or more for `held_s` around it. Shorter pulses, such as blasts, are left out.
+    pub fn load_times_s(&self, held_s: f64) -> Vec<f64> {
+        let mut times_s: Vec<f64> = std::iter::once(0.0).chain(self.loads.extremes_s(held_s)).collect();
+        times_s.sort_by(f64::total_cmp);
+        times_s.dedup();
+        times_s
+    }
+
+    /// Loads on all nodes at a time where blocks were drawn [N]: gravity, tractions, forces, and pressures of water and blasts.
+    pub fn loads_as_drawn(&self, time_s: f64) -> Vec<Vec3> {
+        let position = &self.problem.blocks.rest_position;
+        self.loads.at(time_s, Places { position, velocity: &self.state.velocity, lead_s: 0.0 })
+    }
+
     /// Loads on the nodes where they are, at the present time.
     pub(crate) fn place_loads_now(&mut self) {
         let now_s = self.clock_s(0.0);
         let State { position, velocity, .. } = &self.state;
         self.loads.place(now_s, now_s, Places { position, velocity, lead_s: 0.0 });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_table_counts_where_it_is_extreme_for_long_enough_and_at_its_end() {
+        let counted = |rows: &[(f64, f64)], held_s: f64| -> Vec<f64> {
+            extremes(rows, held_s).map(|row| row.0).collect()
+        };
+        let peak = [(0.0, 0.0), (1.0, 1.0), (2.0, 0.1), (9.0, 0.2)];
+        assert_eq!(counted(&peak, 0.5), [0.0, 1.0, 9.0]);
+        let pulse = [(0.0, 0.0), (0.01, 0.5), (0.02, 1.0), (0.03, 0.2), (0.05, -1.0), (0.06, 0.1)];
+        assert_eq!(counted(&pulse, 0.5), [0.0, 0.06, 0.06], "its ends hold for ever");
+        assert_eq!(counted(&pulse, 0.015), [0.05, 0.02, 0.06]);
+        assert!(counted(&[], 1.0).is_empty());
     }
 }
