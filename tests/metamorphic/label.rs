@@ -1,6 +1,7 @@
 //! Whether the label tells the truth: a run against the same scene with a 16 times finer step.
 //!
-//! Promised is that speeds are right to 1 % of the largest, or of 0.01 √(g h) where blocks hardly move, and places to a tenth of the height of a tetrahedron. An error is
+//! Promised is that speeds are right to 1 % of the largest, or of 0.01 √(g h) where blocks hardly move, and places to a fifth of the height of a tetrahedron; these scenes are held to a tenth, which
+//! only a blow on a held block exceeds. An error is
 //! the larger of the two over what is promised, at the end of the run; a speed may be that of one step before or after. The
 //! judges are runs with Δt/8 and Δt/16, or Δt/32 where these leave a doubt: twice their difference is what the finer one may
 //! be off by. A motion is sensitive where a push of a hundredth of what is promised grows thirtyfold.

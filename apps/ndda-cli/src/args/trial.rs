@@ -45,7 +45,7 @@ pub struct TuneArgs {
     #[arg(long, value_name = "ERROR", value_parser = relative_error)]
     pub error: f64,
     /// Results that have to be right: columns of history.csv or blocks, by name or its beginning [default: what the scene's closed
-    /// form judges, else the displacements of all monitors and blocks].
+    /// form judges, else the displacements of the monitors, or of all blocks where there are none].
     #[arg(long, value_delimiter = ',', value_name = "NAME")]
     pub of: Vec<String>,
     /// Try coarser and finer meshes, too.

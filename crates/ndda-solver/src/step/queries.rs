@@ -105,6 +105,11 @@ impl Simulation {
         self.newton.is_some() || !asked || self.problem.shapes.iter().all(rigid)
     }
 
+    /// Acceleration of the mass centre of a block in the last step [m/s²].
+    pub fn acceleration_m_s2(&self, block: BlockId) -> Vec3 {
+        self.shape(block).operator.center(&self.state.acceleration[self.blocks().nodes_of(block)])
+    }
+
     /// Whether a block has fallen freely in the last step: its mass centre has the acceleration of gravity, to a thousandth.
     pub fn falls_freely(&self, block: BlockId) -> bool {
         let shape = self.shape(block);
@@ -112,9 +117,7 @@ impl Simulation {
             return false;
         }
         let gravity_m_s2 = self.problem.gravity_m_s2;
-        let acceleration_m_s2 =
-            shape.operator.center(&self.state.acceleration[self.blocks().nodes_of(block)]);
-        (acceleration_m_s2 - gravity_m_s2).norm() < 1e-3 * gravity_m_s2.norm()
+        (self.acceleration_m_s2(block) - gravity_m_s2).norm() < 1e-3 * gravity_m_s2.norm()
     }
 
     /// Blocks that fall freely below every block that does not, along gravity: nothing is left on which they could land.

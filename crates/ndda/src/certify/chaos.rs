@@ -29,6 +29,8 @@ pub struct Chaos {
 /// Difference of the displacements of two runs over time, relative to the largest displacement in the second.
 struct Apart {
     times_s: Vec<f64>,
+    /// That displacement [m].
+    largest_m: f64,
     relative: Vec<f64>,
 }
 
@@ -43,7 +45,7 @@ fn apart(quantities: &[Quantity], first: &Table, second: &Table) -> Apart {
     }
     let divisor = if scale > 0.0 { scale } else { 1.0 };
     relative.iter_mut().for_each(|r| *r /= divisor);
-    Apart { times_s: values(second, super::quantities::TIME, &rows[1]), relative }
+    Apart { times_s: values(second, super::quantities::TIME, &rows[1]), largest_m: scale, relative }
 }
 
 impl Apart {
@@ -52,11 +54,12 @@ impl Apart {
     }
 }
 
-/// Whether displacements of three runs of ever shorter steps do not come nearer to each other.
-pub fn is_suspect(quantities: &[Quantity], tables: [&Table; 3]) -> bool {
+/// Whether displacements of three runs of ever shorter steps do not come nearer to each other, by more than the rounding of places [m].
+pub fn is_suspect(quantities: &[Quantity], tables: [&Table; 3], rounding_m: f64) -> bool {
     let first = apart(quantities, tables[0], tables[1]).largest();
-    let last = apart(quantities, tables[1], tables[2]).largest();
-    last > NEGLIGIBLE && last > STAYS * first
+    let apart = apart(quantities, tables[1], tables[2]);
+    let last = apart.largest();
+    last > NEGLIGIBLE && last > STAYS * first && last * apart.largest_m > rounding_m
 }
 
 /// Judgement by the twin of the run of the longest step; none where the motion is regular.
@@ -86,11 +89,15 @@ mod tests {
     }
 
     fn judged(chaotic: bool, errors: [f64; 3]) -> (bool, Option<Chaos>) {
+        judged_beyond(0.0, chaotic, errors)
+    }
+
+    fn judged_beyond(rounding_m: f64, chaotic: bool, errors: [f64; 3]) -> (bool, Option<Chaos>) {
         let runs = errors.map(|error| motion(0.3 + error, chaotic));
         let found = quantities(&runs[0], &[]);
         let tables = [&runs[0], &runs[1], &runs[2]];
         let twin = motion(0.3 + errors[0] + DISTURBANCE, chaotic);
-        (is_suspect(&found, tables), judge(&found, tables, &twin))
+        (is_suspect(&found, tables, rounding_m), judge(&found, tables, &twin))
     }
 
     #[test]
@@ -106,5 +113,11 @@ mod tests {
     fn a_regular_motion_is_not_chaotic_whether_or_not_its_differences_fall() {
         assert_eq!(judged(false, [4e-2, 2e-2, 1e-2]), (false, None));
         assert_eq!(judged(false, [1e-2, -1e-2, 2e-2]), (true, None));
+    }
+
+    #[test]
+    fn differences_within_the_rounding_of_places_are_no_chaos() {
+        assert!(judged_beyond(0.5, true, [4e-6, 2e-6, 1e-6]).0);
+        assert!(!judged_beyond(2.0, true, [4e-6, 2e-6, 1e-6]).0);
     }
 }

@@ -7,7 +7,7 @@ use ndda_solver::Simulation;
 
 use super::chaos::DISTURBANCE;
 use super::error::CertifyError;
-use super::quantities::{BLOCK, named};
+use super::quantities::{BLOCK, named, rounding};
 use crate::build;
 use crate::run::recorder::{Extras, columns, held_blocks};
 use crate::study::case::Case;
@@ -37,6 +37,8 @@ pub struct Plan {
     end_s: f64,
     /// Columns of the histories of its runs.
     columns: Vec<String>,
+    /// Largest coordinate of a node [m].
+    farthest_m: f64,
 }
 
 impl Plan {
@@ -57,7 +59,13 @@ impl Plan {
             if steps == build::steps(&scene.time) { scene.time.step_s } else { end_s / steps as f64 };
         let names = monitors.iter().map(|monitor| monitor.name.as_str());
         let columns = columns(names, &held_blocks(simulation), Extras::of(scene));
-        Self { scene: scene.clone(), common, steps, step_s, end_s, columns }
+        let farthest_m = simulation.blocks().rest_position.iter().map(|x| x.amax()).fold(0.0, f64::max);
+        Self { scene: scene.clone(), common, steps, step_s, end_s, columns, farthest_m }
+    }
+
+    /// What rounding may do to a place in the shortest of three runs from some level on [m].
+    pub fn rounding_m(&self, level: u32) -> f64 {
+        rounding(self.farthest_m, self.steps(level + 2))
     }
 
     /// Whether all names that are asked for begin a column of the histories.

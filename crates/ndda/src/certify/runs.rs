@@ -74,7 +74,7 @@ pub fn certify(
     let moving = quantities(&c.history, &[]);
     let tables = [&a.history, &b.history, &c.history];
     let (mut twin, mut chaos) = (None, None);
-    if chaos::is_suspect(&moving, tables) {
+    if chaos::is_suspect(&moving, tables, plan.rounding_m(first)) {
         let case = plan.twin(first, largest_speed_m_s(&a));
         launch.run_all(std::slice::from_ref(&case))?;
         let run = ended(&case)?;

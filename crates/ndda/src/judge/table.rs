@@ -22,7 +22,7 @@ pub fn ending(summary: &Summary) -> String {
                 Some(error_m_s) => format!("blocks hardly move; speeds accurate to {}/s", length(error_m_s)),
                 None => "speeds to 1 % of the largest".into(),
             };
-            format!("accurate: {speeds}, positions to a tenth of an element\n")
+            format!("accurate: {speeds}, positions to a fifth of an element\n")
         }
         (LabelWord::Sensitive, reasons) => format!("sensitive: {}\n", reasons.join("; ")),
         (LabelWord::Inaccurate, reasons) => format!("inaccurate:{}\n", reasons::in_lines(reasons)),

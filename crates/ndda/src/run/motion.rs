@@ -93,9 +93,12 @@ impl LargestMotions {
         // A boulder at the top of its flight is slow, too.
         let stays = distance_m < STAYS * radius_m(&simulation.shape(block).operator);
         let flies = simulation.falls_freely(block);
+        // Over its way, its acceleration would change its speed by less than a hundredth.
+        let coasts =
+            simulation.acceleration_m_s2(block).norm() * distance_m < (1.0 - ACCELERATES) * speed_m_s.powi(2);
         let course = if is_slow && !flies {
             Course::AtRest
-        } else if speed_m_s >= ACCELERATES * fastest_m_s {
+        } else if speed_m_s >= ACCELERATES * fastest_m_s && !coasts {
             Course::Accelerating
         } else if stays && !flies {
             Course::AtRest
@@ -278,6 +281,15 @@ mod tests {
         let motion = summary.motion.unwrap();
         assert!(motion.speed_m_s < 1e-9, "{}", motion.speed_m_s);
         assert_eq!(motion.course, Course::Moving);
+    }
+
+    #[test]
+    fn a_block_that_flies_without_gravity_moves_and_does_not_accelerate() {
+        let text = "(title: \"thrown\", contact: Off, time: (step_s: 1e-3, end_s: 0.2),
+            materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: 2600)],
+            blocks: [(name: \"cube\", material: \"rock\", shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), velocity_m_s: (0, 0, 2))])";
+        let summary = Run::new(Model::from_text(text).unwrap()).finish(&mut []).unwrap().summary;
+        assert_eq!(summary.motion.unwrap().course, Course::Moving);
     }
 
     #[test]

@@ -106,7 +106,7 @@ fn brittle(answer: &Safety) -> String {
     let found = match (broken, standing) {
         (Some([broken, all]), Some(trial)) => {
             format!(
-                "it was gone on {broken} of {all} facets in contact where blocks still stood, at {:.4}. ",
+                "some of it was gone on {broken} of {all} facets in contact where blocks still stood, at {:.4}. ",
                 trial.factor
             )
         }
