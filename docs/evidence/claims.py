@@ -54,7 +54,7 @@ MARKED = {
     "docs/guide/error-and-time.md": DATA,  # docs/evidence/error_and_time.py --check
 }
 BEGIN = re.compile(r"<!-- (table|figures|tables of)\b.*-->")
-END = re.compile(r"<!-- (end|figures: end|tables of .*: end|end of table).*-->")
+END = re.compile(r"<!-- (end|figures: end|tables? of .*: end|end of table).*-->")
 
 NUMBER = re.compile(
     r"(?<![\w.,§/–^-])[-−+±]?(\d{1,3}(?:[   ]\d{3})+(?!\d)|\d+)(\.\d+)?(?:e[-+−]?\d+|\s?[·×] ?10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)?(?:[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)?(?![\w]*[_(])"

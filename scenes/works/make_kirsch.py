@@ -19,7 +19,7 @@ HEAD = """// Kirsch's tunnel: a circular tunnel of 1 m radius in elastic rock un
 // Densities make the density times the length of a cell the same in all rings, so that no ring needs shorter steps than the others: there is no weight, and at rest
 // nothing depends on them.
 //
-// Passes when displacements and stresses around the tunnel agree with the closed form for a fixed wall (`cargo test --test verification kirsch`): displacements to 1.4 % of
+// Passes when displacements and stresses around the tunnel agree with the closed form for a fixed wall (`cargo test --test verification kirsch`): displacements to 1.3 % of
 // the largest, stresses to 1.5 %.
 """
 

@@ -1,6 +1,6 @@
 //! Friction on velocities in random impacts of all kinds of body, at the step that `ndda check` advises and at a sixteenth of it.
 //!
-//! `NDDA_CASES=500 cargo test --test verification random_impacts -- --nocapture` prints the table of docs/theory/contact.md.
+//! `NDDA_CASES=170 cargo test --test verification random_impacts -- --nocapture` prints the table of docs/theory/contact.md.
 
 use std::path::Path;
 

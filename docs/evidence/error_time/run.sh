@@ -6,7 +6,7 @@ set -euo pipefail
 cd "$(dirname "$0")/../../.."
 kept=docs/evidence/error_time
 studies=("$@")
-((${#studies[@]})) || studies=(sliding_45 collision bounce bar_impact cantilever stack column cradle twist bars)
+((${#studies[@]})) || studies=(sliding_45 collision bounce bar_impact cantilever stack column cradle twist bars shaken)
 cargo build --locked --release --quiet -p ndda-cli
 for study in "${studies[@]}"; do
   "${CARGO_TARGET_DIR:-target}/release/ndda" study "scenes/studies/$study.ron" --quiet
