@@ -27,6 +27,10 @@ pub struct PairResultant {
     pub sliding: f64,
 }
 
+/// Cosines of the angles with a direction from which on faces lie across it, and up to which along it: a degree off.
+const ACROSS: f64 = 0.9998;
+const ALONG: f64 = 0.0175;
+
 /// The resultants of all pairs that touch, in the order of their blocks; `facets` are sorted by pair.
 pub fn resultants(blocks: &BlockSet, facets: &mut [FacetContact]) -> Vec<PairResultant> {
     let pair = |facet: &FacetContact| {
@@ -45,7 +49,7 @@ fn resultant(
     // A facet of the second block feels the opposite of the first block's force.
     let sign = |f: &FacetContact| if blocks.triangle_block[f.facet.index()] == first { 1.0 } else { -1.0 };
     let (mut force_n, mut friction_n, mut center) = (Vec3::zeros(), Vec3::zeros(), Vec3::zeros());
-    let (mut area, mut slides, mut volume, mut weight) = (0.0, 0.0, 0.0, 0.0);
+    let (mut area, mut slides, mut weight) = (0.0, 0.0, 0.0);
     for facet in facets {
         let total = facet.push_n + facet.friction_n;
         force_n += sign(facet) * total;
@@ -54,8 +58,6 @@ fn resultant(
         weight += total.norm();
         area += facet.area_m2;
         slides += if facet.sticks { 0.0 } else { facet.area_m2 };
-        // V = ⅓ ∮ x·n dS over the pieces of both surfaces.
-        volume += facet.area_m2 * (facet.center - facets[0].center).dot(&facet.normal) / 3.0;
     }
     center = facets[0].center + if weight > 0.0 { center / weight } else { Vec3::zeros() };
     let moment = |f: &FacetContact| sign(f) * (f.center - center).cross(&(f.push_n + f.friction_n));
@@ -67,7 +69,21 @@ fn resultant(
         center,
         moment_n_m: facets.iter().map(moment).sum(),
         area_m2: 0.5 * area,
-        depth_m: if area > 0.0 { 2.0 * volume / area } else { 0.0 },
+        depth_m: if area > 0.0 { 2.0 * overlap_m3(facets) / area } else { 0.0 },
         sliding: if area > 0.0 { slides / area } else { 0.0 },
     }
+}
+
+/// Volume of the overlap whose surface the facets are [m³]: V = ⅓ ∮ x·n dS. Where all of them lie across one direction e or along it, V = ∮ (x·e)(e·n) dS instead:
+/// walls along e that both blocks have in common, as those of cubes in a stack, are no part of either surface inside the other, and would be missing.
+fn overlap_m3(facets: &[FacetContact]) -> f64 {
+    let from = facets[0].center;
+    let e =
+        facets.iter().max_by(|a, b| a.push_n.norm().total_cmp(&b.push_n.norm())).map_or(from, |f| f.normal);
+    let is_flat = facets.iter().all(|f| f.normal.dot(&e).abs() > ACROSS || f.normal.dot(&e).abs() < ALONG);
+    let part = |f: &FacetContact| match is_flat {
+        true => f.area_m2 * (f.center - from).dot(&e) * f.normal.dot(&e),
+        false => f.area_m2 * (f.center - from).dot(&f.normal) / 3.0,
+    };
+    facets.iter().map(part).sum()
 }

@@ -65,6 +65,29 @@ fn area_and_depth_are_those_of_the_overlap_and_friction_holds_until_it_slides() 
     }
 }
 
+/// Of a stack, a stack at the edge of a floor, and a column that is turned in space, which have two, one and two pairs of walls in common.
+#[test]
+fn the_depth_of_blocks_with_walls_in_common_is_that_of_their_overlap() {
+    let depth = 4e-2;
+    for floor in [[1.0, 1.0, 1.0], [3.0, 1.0, 1.0]] {
+        for angle in [0.0, 0.7] {
+            let turned = |mut mesh: ndda_mesh::BlockMesh| {
+                let turn = nalgebra::Rotation3::new(angle * Vec3::new(0.6, 0.0, 0.8));
+                mesh.nodes.iter_mut().for_each(|x| *x = turn * *x);
+                mesh
+            };
+            let lower = turned(test_box([0.0; 3], floor, [1, 1, 1]));
+            let upper = turned(test_box([0.0, 0.0, 1.0 - depth], [1.0, 1.0, 1.0], [1, 1, 1]));
+            let (blocks, mut facets, _) = found(vec![lower, upper], 1e-6);
+            let [pair] = resultants(&blocks, &mut facets)[..] else { panic!("one pair touches") };
+            // Walls that are not in common bear by the half of what is inside.
+            let walls = pair.area_m2 - 1.0;
+            assert!(pair.area_m2 < 1.0 + 2.0 * depth, "{walls}");
+            assert!((pair.depth_m * pair.area_m2 / depth - 1.0).abs() < 1e-6, "{floor:?} {}", pair.depth_m);
+        }
+    }
+}
+
 #[test]
 fn a_bond_pulls_two_blocks_together() {
     let stiffness = 1e9;
