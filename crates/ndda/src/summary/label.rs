@@ -15,7 +15,7 @@ pub struct Label {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum LabelWord {
-    /// Speeds are right to 1 % of the largest, places to a fifth of the height of the tetrahedra in contact: to a tenth, but for a blow on a block that is held or far heavier.
+    /// Speeds are right to 1 % of the largest, places to a fifth of the height of the tetrahedra in contact, or of the width of a rigid or affine convex block with `Smooth`: to a tenth, but for a blow on a block that is held or far heavier.
     #[default]
     Accurate,
     /// Accurate, but a slightly different start leads to other positions: only statistics of several runs are meaningful.
