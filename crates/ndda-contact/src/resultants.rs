@@ -27,7 +27,7 @@ pub struct PairResultant {
     pub sliding: f64,
 }
 
-/// Cosines of the angles with a direction from which on faces lie across it, and up to which along it: a degree off.
+/// A face lies across a direction if the cosine between that and its normal is larger than `ACROSS`, and along it if smaller than `ALONG`: within a degree.
 const ACROSS: f64 = 0.9998;
 const ALONG: f64 = 0.0175;
 
@@ -75,12 +75,13 @@ fn resultant(
 }
 
 /// Volume of the overlap whose surface the facets are [m³]: V = ⅓ ∮ x·n dS. Where all of them lie across one direction e or along it, V = ∮ (x·e)(e·n) dS instead:
-/// walls along e that both blocks have in common, as those of cubes in a stack, are no part of either surface inside the other, and would be missing.
+/// walls that both blocks have in common, as cubes in a stack have, lie inside neither block. They are therefore missing from the facets, but add nothing to the second integral.
 fn overlap_m3(facets: &[FacetContact]) -> f64 {
     let from = facets[0].center;
-    let e =
-        facets.iter().max_by(|a, b| a.push_n.norm().total_cmp(&b.push_n.norm())).map_or(from, |f| f.normal);
-    let is_flat = facets.iter().all(|f| f.normal.dot(&e).abs() > ACROSS || f.normal.dot(&e).abs() < ALONG);
+    let most = facets.iter().max_by(|a, b| a.push_n.norm().total_cmp(&b.push_n.norm()));
+    let e = most.expect("a pair that touches has facets").normal;
+    let is_oblique = |f: &FacetContact| (ALONG..=ACROSS).contains(&f.normal.dot(&e).abs());
+    let is_flat = !facets.iter().any(is_oblique);
     let part = |f: &FacetContact| match is_flat {
         true => f.area_m2 * (f.center - from).dot(&e) * f.normal.dot(&e),
         false => f.area_m2 * (f.center - from).dot(&f.normal) / 3.0,

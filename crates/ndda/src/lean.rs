@@ -94,8 +94,8 @@ fn left(m: f64) -> f64 {
     low
 }
 
-/// The free block whose force moves by the largest part at the start; none without gravity, of potentials other than `Smooth`, or where none moves by more than
-/// [`MOST_MOVED`].
+/// The free block whose force moves by the largest part under the loads at the start and at the extremes of their tables; none without gravity, of potentials other
+/// than `Smooth`, or where none moves by more than [`MOST_MOVED`].
 pub fn worst(scene: &Scene, simulation: &Simulation) -> Option<Lean> {
     let Some(Contact::Potential { penalty_pa, potential: Potential::Smooth { reference_m }, .. }) =
         scene.contact
@@ -114,9 +114,12 @@ pub fn worst(scene: &Scene, simulation: &Simulation) -> Option<Lean> {
     }
     let bases: Vec<(BlockId, Base)> =
         free.into_iter().filter_map(|block| Some((block, Base::of(simulation, block, &gravity)?))).collect();
+    if bases.is_empty() {
+        return None;
+    }
     // A block that rests on several others is left out, since how it divides its weight among them is not known.
-    let alone_or_not = |block: BlockId| with_all_on_it(&bases, block).unwrap_or_else(|| vec![block]);
-    let stacks: Vec<Vec<BlockId>> = bases.iter().map(|(block, _)| alone_or_not(*block)).collect();
+    let stack_on = |block: BlockId| with_all_on_it(&bases, block).unwrap_or_else(|| vec![block]);
+    let stacks: Vec<Vec<BlockId>> = bases.iter().map(|(block, _)| stack_on(*block)).collect();
     let mut worst: Vec<Option<Leaning>> = vec![None; bases.len()];
     for time_s in simulation.load_times_s(topples_in_s(simulation, &bases, &gravity)) {
         let loads = simulation.loads_as_drawn(time_s);

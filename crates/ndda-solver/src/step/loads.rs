@@ -156,14 +156,14 @@ impl Loads {
         }
     }
 
-    /// Times of the rows of their tables [s]: the last ones, and those of the largest and the least factor that hold for so long [s].
+    /// Times [s] of the last row of each table of a load, and of its largest and its least factor that lasts for `held_s`.
     pub(crate) fn extremes_s(&self, held_s: f64) -> impl Iterator<Item = f64> {
         let of_pressures = self.pressures_over_time().map(|(_, factor)| factor);
         let factors = self.varying.iter().map(|load| &load.factor).chain(of_pressures);
         factors.flat_map(move |factor| extremes(&factor.rows, held_s)).map(|row| row.0)
     }
 
-    /// What they are at a time on nodes in some places, per node [N], without what a caller has set and without reactions of quiet faces.
+    /// Load on each node [N] at a time, with the nodes at `places`; without the forces that a caller has set and the reactions of quiet faces.
     pub(crate) fn at(&self, time_s: f64, places: Places) -> Vec<Vec3> {
         let mut then = self.clone();
         then.driving.clear();
@@ -215,7 +215,7 @@ impl Loads {
     }
 }
 
-/// The last row of a table, and those of the largest and the least value among rows that hold for so long [s].
+/// The last row of a table, and the rows of its largest and its least value that lasts for `held_s`.
 fn extremes(rows: &[(f64, f64)], held_s: f64) -> impl Iterator<Item = (f64, f64)> {
     let mut rising: Vec<usize> = (0..rows.len()).collect();
     rising.sort_by(|a, b| rows[*a].1.total_cmp(&rows[*b].1));
@@ -224,7 +224,7 @@ fn extremes(rows: &[(f64, f64)], held_s: f64) -> impl Iterator<Item = (f64, f64)
     least.into_iter().chain(largest).map(|row| rows[row]).chain(rows.last().copied())
 }
 
-/// Whether a table keeps half of its value at a row or more for so long around it [s]. Before its first row and after its last one it stands still for ever.
+/// Whether a table stays at or above half of its value at a row for `held_s` around that row. It is constant before its first row and after its last.
 fn holds(rows: &[(f64, f64)], row: usize, held_s: f64) -> bool {
     let value = rows[row].1;
     let is_less = |(_, other): &&(f64, f64)| other * value.signum() < 0.5 * value.abs();

@@ -29,7 +29,7 @@ pub struct Chaos {
 /// Difference of the displacements of two runs over time, relative to the largest displacement in the second.
 struct Apart {
     times_s: Vec<f64>,
-    /// That displacement [m].
+    /// The largest displacement in the second [m].
     largest_m: f64,
     relative: Vec<f64>,
 }
@@ -57,9 +57,9 @@ impl Apart {
 /// Whether displacements of three runs of ever shorter steps do not come nearer to each other, by more than the rounding of places [m].
 pub fn is_suspect(quantities: &[Quantity], tables: [&Table; 3], rounding_m: f64) -> bool {
     let first = apart(quantities, tables[0], tables[1]).largest();
-    let apart = apart(quantities, tables[1], tables[2]);
-    let last = apart.largest();
-    last > NEGLIGIBLE && last > STAYS * first && last * apart.largest_m > rounding_m
+    let finer = apart(quantities, tables[1], tables[2]);
+    let last = finer.largest();
+    last > NEGLIGIBLE && last > STAYS * first && last * finer.largest_m > rounding_m
 }
 
 /// Judgement by the twin of the run of the longest step; none where the motion is regular.

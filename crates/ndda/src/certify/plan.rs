@@ -63,7 +63,7 @@ impl Plan {
         Self { scene: scene.clone(), common, steps, step_s, end_s, columns, farthest_m }
     }
 
-    /// What rounding may do to a place in the shortest of three runs from some level on [m].
+    /// Rounding error of a position [m] in the run of the shortest of three steps, of which `level` is the longest.
     pub fn rounding_m(&self, level: u32) -> f64 {
         rounding(self.farthest_m, self.steps(level + 2))
     }
