@@ -38,6 +38,7 @@ mod flat_impact;
 mod free_field;
 mod free_flight;
 mod friction_of_patches;
+mod gained_in_rebounds;
 mod glancing_collision;
 mod ground_stress;
 mod hertz;

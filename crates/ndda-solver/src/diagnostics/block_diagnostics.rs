@@ -247,11 +247,12 @@ impl BlockDiagnostics {
         step: &Quadrature,
         drive_of: impl Fn(usize) -> &'a RigidForcing + Sync,
     ) {
-        each_of_many(&mut self.balances, |block, balance| {
+        let Self { scales, balances, .. } = self;
+        each_of_many(balances, |block, balance| {
             let drive = drive_of(block);
             balance.ringing.add(step, drive);
             balance.hops.add(step.dt_s, drive);
-            balance.rebound.add(step.dt_s, drive);
+            balance.rebound.add(step.dt_s, drive, scales[block].deforms);
         });
     }
 

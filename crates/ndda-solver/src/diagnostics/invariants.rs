@@ -53,6 +53,8 @@ pub struct Invariants {
     pub hops_with_friction: Worst,
     /// Speed that a sliding block gained by sticking while its contact rebounded, over the largest speed.
     pub rebound_speed: Worst,
+    /// The same of a block that deforms, as its impulse tells it if it slides on one plane.
+    pub rebound_speed_on_a_plane: Worst,
     /// |action + reaction| / |force| over the pairs.
     pub action_reaction: f64,
     /// smallest det F.

@@ -95,6 +95,7 @@ impl Ledger {
             chattering_hops: Worst::default(),
             hops_with_friction: Worst::default(),
             rebound_speed: Worst::default(),
+            rebound_speed_on_a_plane: Worst::default(),
             action_reaction: 0.0,
             friction_left_m_s: 0.0,
             smallest_volume_ratio: 1.0,
@@ -349,6 +350,7 @@ impl Ledger {
             self.blocks.lateral_drift(scale_m_s, self.rounding_j);
         let (creep_speed, creep_place) = self.blocks.creep(scale_m_s);
         let (growing_hops, chattering_hops) = self.blocks.hops(self.largest_speed_m_s, self.rounding_j);
+        let (rebound_speed, rebound_speed_on_a_plane) = self.blocks.rebound(scale_m_s, self.rounding_j);
         let (lumped_speed, lumped_place) = self.blocks.lumped(scale_m_s, self.rounding_j);
         let speed = |value_m_s: f64| over(value_m_s, self.largest_speed_m_s.max(value_m_s));
         Invariants {
@@ -369,7 +371,8 @@ impl Ledger {
             growing_hops,
             chattering_hops,
             hops_with_friction: self.blocks.hops_with_friction(self.largest_speed_m_s, self.rounding_j),
-            rebound_speed: self.blocks.rebound(scale_m_s, self.rounding_j),
+            rebound_speed,
+            rebound_speed_on_a_plane,
             lumped_speed,
             lumped_place,
             turn_place: self.blocks.turned_over_height(),

@@ -4,8 +4,11 @@
 //! as that of a block on rigid contact. Where μ w exceeds that, the block sticks (v = 0) with less friction than its limit, and v + μ w grows by more. The softer
 //! contact is, the larger w is, √(g d) for a depth d at rest, and the faster the block slides from then on.
 //!
-//! While it slips, contact pushes in one direction. What the impulse of the first oscillations has across the direction of later pushes is what friction failed
-//! to do: it is v's gain, over √(1 + μ²).
+//! On rigid contact, a block that hardly slides gains speed as the loads do, v = c L with L = ∫ g dt. What it has gained in rebounds is where the line of
+//! v over L begins that it follows after the first oscillations. So it is for blocks between others, too, whatever they touch.
+//!
+//! Blocks that deform may oscillate for longer than their contacts, and follow no line by then. On one plane, what the impulse of the first oscillations has across
+//! the direction of later pushes tells the gain over √(1 + μ²): while a block slips, contact pushes in one direction, and friction failed to do the rest.
 
 use ndda_mesh::Vec3;
 use serde::{Deserialize, Serialize};
@@ -14,10 +17,20 @@ use crate::bodies::report::RigidForcing;
 
 /// Length of a window of time, over 1/ω_c: rows of contact stiffness give an ω_c several times that of the oscillations.
 const WINDOW: f64 = 60.0;
+/// Longest flight of a block whose contact rebounds, over 1/ω_c.
+const LONGEST_FLIGHT: f64 = 0.5 * WINDOW;
+/// Part by which a load may change in the windows.
+const STEADY: f64 = 1e-3;
+/// Windows that count, after the first.
+const WINDOWS: usize = 3;
 /// Most steps before a block that is drawn in contact touches.
 const TOUCHES_WITHIN: f64 = 3.5;
 /// Largest speed of a rebound over |g|/ω_c.
 const FASTEST: f64 = 10.0;
+/// Least part of its speed in the second window that a block which slides on has in the last: one that sinks or stops is slower then.
+const SLIDES_ON: f64 = 0.95;
+/// By how much, where a block deforms and may oscillate slowly, the starts of lines through the second and third, and through the third and fourth window may differ, over the gain.
+const SAME_LINE: f64 = 0.2;
 /// Least cosine between the gain and the way of a block, 1/√(1 + μ²) where it slides.
 const ALONG: f64 = 0.6;
 /// Cosine between directions of a load that does not turn.
@@ -33,13 +46,28 @@ pub(crate) struct Rebound {
     impulse_m_s: Vec3,
     velocity_m_s: Vec3,
     load_m_s2: Vec3,
+    /// The load when it last changed, and the time since then [s], in which the windows lie.
+    steady_m_s2: f64,
+    steady_s: f64,
+    /// Time since it last touched [s].
+    flies_s: f64,
     /// Largest ω_c² so far.
     rate2: f64,
-    /// Time in the second and the third window [s], and integrals of the impulse in each, and of the velocity in both [m].
-    window_s: [f64; 2],
-    impulse_m: [Vec3; 2],
-    way_m: Vec3,
+    /// ∫ g dt since then [m/s].
+    fall_m_s: f64,
+    /// The second window after the load has become steady, and those after it.
+    windows: [Window; WINDOWS],
     gained_m_s: f64,
+    across_m_s: f64,
+}
+
+/// Time in a window [s], and integrals of the impulse, the velocity and ∫ g dt in it [m].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Window {
+    time_s: f64,
+    impulse_m: Vec3,
+    way_m: Vec3,
+    fall_m: f64,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -51,8 +79,8 @@ enum Watch {
 }
 
 impl Rebound {
-    /// Books a step.
-    pub(crate) fn add(&mut self, dt_s: f64, drive: &RigidForcing) {
+    /// Books a step of a block that deforms or does not.
+    pub(crate) fn add(&mut self, dt_s: f64, drive: &RigidForcing, deforms: bool) {
         if self.watch == Watch::Over {
             return;
         }
@@ -68,6 +96,7 @@ impl Rebound {
             };
             self.load_m_s2 = drive.load_m_s2;
             self.velocity_m_s = (self.time_s - dt_s) * drive.load_m_s2;
+            self.fall_m_s = self.velocity_m_s.norm();
         }
         if drive.touches {
             let turns =
@@ -77,52 +106,98 @@ impl Rebound {
                 return;
             }
             self.load_m_s2 = drive.load_m_s2;
+            self.wait_for_steady_load();
             self.impulse_m_s += dt_s * (drive.shift_m_s2 - drive.load_m_s2);
             self.velocity_m_s += dt_s * drive.shift_m_s2;
             self.rate2 = self.rate2.max(drive.contact_rate2);
+            self.flies_s = 0.0;
         } else {
             self.velocity_m_s += dt_s * self.load_m_s2;
+            self.flies_s += dt_s;
+            // One that has left its contact for longer than it oscillates falls.
+            if self.flies_s * self.rate2.sqrt() > LONGEST_FLIGHT {
+                self.watch = Watch::Over;
+                return;
+            }
         }
-        self.look(dt_s);
+        self.fall_m_s += dt_s * self.load_m_s2.norm();
+        self.look(dt_s, deforms);
     }
 
-    fn look(&mut self, dt_s: f64) {
+    /// Begins the windows anew while a load grows.
+    fn wait_for_steady_load(&mut self) {
+        let load_m_s2 = self.load_m_s2.norm();
+        if (load_m_s2 - self.steady_m_s2).abs() > STEADY * self.steady_m_s2 {
+            (self.steady_m_s2, self.steady_s) = (load_m_s2, 0.0);
+            self.windows = <[Window; WINDOWS]>::default();
+        }
+    }
+
+    fn look(&mut self, dt_s: f64, deforms: bool) {
+        self.steady_s += dt_s;
         let window_s = WINDOW / self.rate2.sqrt();
-        let window = (self.time_s / window_s) as usize;
+        let window = (self.steady_s / window_s) as usize;
         match window {
             0 => {}
-            1 | 2 => {
-                self.window_s[window - 1] += dt_s;
-                self.impulse_m[window - 1] += dt_s * self.impulse_m_s;
-                self.way_m += dt_s * self.velocity_m_s;
+            1..=WINDOWS => {
+                let sums = &mut self.windows[window - 1];
+                sums.time_s += dt_s;
+                sums.impulse_m += dt_s * self.impulse_m_s;
+                sums.way_m += dt_s * self.velocity_m_s;
+                sums.fall_m += dt_s * self.fall_m_s;
             }
             _ => {
                 self.watch = Watch::Over;
-                self.gained_m_s = self.found_m_s();
+                if self.windows.iter().all(|window| window.time_s > 0.0) {
+                    self.gained_m_s = self.start_of_line_m_s(deforms);
+                    self.across_m_s = if deforms { self.impulse_across_m_s() } else { 0.0 };
+                }
             }
         }
     }
 
-    /// The gain, for a block that slides on, or 0.
-    fn found_m_s(&self) -> f64 {
-        if self.window_s.contains(&0.0) {
-            return 0.0;
-        }
-        let [first, second] = [0, 1].map(|k| self.impulse_m[k] / self.window_s[k]);
+    /// Where the line of v over L begins, for a block that slides on along one, or 0.
+    fn start_of_line_m_s(&self, deforms: bool) -> f64 {
+        let Some(along) = self.windows[WINDOWS - 1].way_m.try_normalize(0.0) else { return 0.0 };
+        let [first, second, third] = self.windows.map(|window| {
+            let (speed_m_s, fall_m_s) =
+                (window.way_m.dot(&along) / window.time_s, window.fall_m / window.time_s);
+            (speed_m_s, fall_m_s)
+        });
+        let start_of = |from: (f64, f64), to: (f64, f64)| from.0 - (to.0 - from.0) / (to.1 - from.1) * from.1;
+        let (gained_m_s, again_m_s) = (start_of(first, second), start_of(second, third));
+        let slides_on = third.0 > SLIDES_ON * first.0;
+        let is_a_line = !deforms || (again_m_s - gained_m_s).abs() < SAME_LINE * gained_m_s;
+        if slides_on && is_a_line && gained_m_s < self.fastest_m_s() { gained_m_s.max(0.0) } else { 0.0 }
+    }
+
+    /// Impulse of the first oscillations across the direction of later pushes, for a block that slides on, or 0.
+    fn impulse_across_m_s(&self) -> f64 {
+        let [first, second, _] = self.windows.map(|window| window.impulse_m / window.time_s);
         let Some(direction) = (second - first).try_normalize(0.0) else { return 0.0 };
         let gain_m_s = first - first.dot(&direction) * direction;
         let gained_m_s = gain_m_s.norm();
-        let way_m = self.way_m.norm();
-        let mean_m_s = way_m / (self.window_s[0] + self.window_s[1]);
-        let fastest_m_s = FASTEST * self.load_m_s2.norm() / self.rate2.sqrt();
+        let [in_first, in_second, _] = &self.windows;
+        let way_m = in_first.way_m + in_second.way_m;
+        let mean_m_s = way_m.norm() / (in_first.time_s + in_second.time_s);
         // Blocks that others push aside meanwhile go elsewhere.
-        let is_along = gain_m_s.dot(&self.way_m) > ALONG * gained_m_s * way_m;
-        if is_along && gained_m_s <= mean_m_s.min(fastest_m_s) { gained_m_s } else { 0.0 }
+        let is_along = gain_m_s.dot(&way_m) > ALONG * gained_m_s * way_m.norm();
+        if is_along && gained_m_s <= mean_m_s.min(self.fastest_m_s()) { gained_m_s } else { 0.0 }
+    }
+
+    /// Largest speed that rebounds may bring [m/s].
+    fn fastest_m_s(&self) -> f64 {
+        FASTEST * self.load_m_s2.norm() / self.rate2.sqrt()
     }
 
     /// Speed that a sliding block has gained in rebounds [m/s].
     pub(crate) fn gained_m_s(&self) -> f64 {
         self.gained_m_s
+    }
+
+    /// The same of a block that deforms and slides on one plane, from its impulse [m/s].
+    pub(crate) fn across_m_s(&self) -> f64 {
+        self.across_m_s
     }
 }
 
@@ -131,9 +206,9 @@ mod tests {
     use super::*;
 
     /// What the rebounds of a mass on a slope of 45° add, on a spring of ω = 100 /s under gravity that is 10 m/s² down the slope and into it, by steps of 20 µs;
-    /// and what it slides faster than on rigid contact after 2 s.
-    fn slides(friction: f64, damping: f64) -> (f64, f64) {
-        let (dt_s, rate2, for_s) = (2e-5, 1e4, 2.0);
+    /// and what it slides faster than on rigid contact after 2.5 s.
+    fn slides(friction: f64, damping: f64, deforms: bool) -> (f64, f64) {
+        let (dt_s, rate2, for_s) = (2e-5, 1e4, 2.5);
         let load_m_s2 = Vec3::new(10.0, 0.0, -10.0);
         let (mut depth_m, mut sinks_m_s, mut slides_m_s) = (0.0, 0.0, 0.0);
         let mut rebound = Rebound::default();
@@ -153,24 +228,35 @@ mod tests {
                 contact_rate2: rate2,
                 ..RigidForcing::default()
             };
-            rebound.add(dt_s, &drive);
+            rebound.add(dt_s, &drive, deforms);
         }
-        (rebound.gained_m_s(), slides_m_s - 10.0 * for_s * f64::max(0.0, 1.0 - friction))
+        (
+            if deforms { rebound.across_m_s() } else { rebound.gained_m_s() },
+            slides_m_s - 10.0 * for_s * f64::max(0.0, 1.0 - friction),
+        )
     }
 
     #[test]
     fn a_block_that_hardly_slides_gains_what_its_rebounds_add_and_one_that_slides_fast_gains_nothing() {
-        let (gained_m_s, faster_m_s) = slides(0.97, 60.0);
-        assert!(faster_m_s > 0.01, "{faster_m_s}");
-        assert!((gained_m_s * 1.97f64.sqrt() / faster_m_s - 1.0).abs() < 0.1, "{gained_m_s} {faster_m_s}");
-        let (gained_m_s, faster_m_s) = slides(0.7, 60.0);
-        assert!(gained_m_s < 1e-3 && faster_m_s.abs() < 1e-3, "{gained_m_s} {faster_m_s}");
+        let (gained_m_s, faster_m_s) = slides(0.97, 60.0, false);
+        assert!(
+            faster_m_s > 0.01 && (gained_m_s / faster_m_s - 1.0).abs() < 0.05,
+            "{gained_m_s} {faster_m_s}"
+        );
+        let (across_m_s, faster_m_s) = slides(0.97, 60.0, true);
+        assert!((across_m_s * 1.97f64.sqrt() / faster_m_s - 1.0).abs() < 0.1, "{across_m_s} {faster_m_s}");
+        for deforms in [false, true] {
+            let (gained_m_s, faster_m_s) = slides(0.7, 60.0, deforms);
+            assert!(gained_m_s < 1e-3 && faster_m_s.abs() < 1e-3, "{gained_m_s} {faster_m_s}");
+        }
     }
 
     /// One whose contact vibrates for ever slips a little in each vibration, and walks where it should stand.
     #[test]
     fn a_block_that_comes_to_rest_has_gained_nothing_and_one_that_walks_on_vibrations_is_told() {
-        let [(rests_m_s, _), (walks_m_s, _)] = [60.0, 0.0].map(|damping| slides(1.3, damping));
-        assert!(rests_m_s < 1e-3 && walks_m_s > 0.01, "{rests_m_s} {walks_m_s}");
+        for deforms in [false, true] {
+            let [(rests_m_s, _), (walks_m_s, _)] = [60.0, 0.0].map(|damping| slides(1.3, damping, deforms));
+            assert!(rests_m_s < 1e-3 && walks_m_s > 0.01, "{rests_m_s} {walks_m_s}");
+        }
     }
 }

@@ -35,9 +35,11 @@ impl BlockDiagnostics {
         worst
     }
 
-    /// Largest speed that rebounds of contact have added to a block that slides, over a speed; what rounding may have done does not count.
-    pub(crate) fn rebound(&self, speed_m_s: f64, rounding_j: f64) -> Worst {
-        self.worst_speed(speed_m_s, rounding_j, |balance| balance.rebound.gained_m_s())
+    /// Largest speed that rebounds of contact have added to a block that slides, over a speed, and to one that deforms and slides on one plane; what rounding may
+    /// have done does not count.
+    pub(crate) fn rebound(&self, speed_m_s: f64, rounding_j: f64) -> (Worst, Worst) {
+        let worst = |of: fn(&BlockBalance) -> f64| self.worst_speed(speed_m_s, rounding_j, of);
+        (worst(|balance| balance.rebound.gained_m_s()), worst(|balance| balance.rebound.across_m_s()))
     }
 
     /// Largest error of a velocity for ringing, over a speed; what rounding may have done does not count.
