@@ -15,21 +15,21 @@ use serde::{Deserialize, Serialize};
 
 use crate::bodies::report::RigidForcing;
 
-/// Length of a window of time, over 1/ω_c: rows of contact stiffness give an ω_c several times that of the oscillations.
-const WINDOW: f64 = 60.0;
+/// Begin of the first window of time, over 1/ω_c; each is as long as all time before it. Rows of contact stiffness give an ω_c several times that of the oscillations.
+const BEGIN: f64 = 15.0;
+/// Windows, the last of which ends after 240/ω_c.
+const WINDOWS: usize = 4;
 /// Longest flight of a block whose contact rebounds, over 1/ω_c.
-const LONGEST_FLIGHT: f64 = 0.5 * WINDOW;
+const LONGEST_FLIGHT: f64 = 30.0;
 /// Part by which a load may change in the windows.
 const STEADY: f64 = 1e-3;
-/// Windows that count, after the first.
-const WINDOWS: usize = 3;
 /// Most steps before a block that is drawn in contact touches.
 const TOUCHES_WITHIN: f64 = 3.5;
 /// Largest speed of a rebound over |g|/ω_c.
 const FASTEST: f64 = 10.0;
-/// Least part of its speed in the second window that a block which slides on has in the last: one that sinks or stops is slower then.
+/// Least part of its speed in one window that a block which slides on has in the next: one that sinks or stops is slower then.
 const SLIDES_ON: f64 = 0.95;
-/// By how much, where a block deforms and may oscillate slowly, the starts of lines through the second and third, and through the third and fourth window may differ, over the gain.
+/// By how much the starts of two lines may differ where a block deforms and may oscillate slowly, over the gain.
 const SAME_LINE: f64 = 0.2;
 /// Least cosine between the gain and the way of a block, 1/√(1 + μ²) where it slides.
 const ALONG: f64 = 0.6;
@@ -55,8 +55,9 @@ pub(crate) struct Rebound {
     rate2: f64,
     /// ∫ g dt since then [m/s].
     fall_m_s: f64,
-    /// The second window after the load has become steady, and those after it.
+    /// Windows since the load has become steady, and how many have ended.
     windows: [Window; WINDOWS],
+    ended: usize,
     gained_m_s: f64,
     across_m_s: f64,
 }
@@ -128,61 +129,49 @@ impl Rebound {
     fn wait_for_steady_load(&mut self) {
         let load_m_s2 = self.load_m_s2.norm();
         if (load_m_s2 - self.steady_m_s2).abs() > STEADY * self.steady_m_s2 {
-            (self.steady_m_s2, self.steady_s) = (load_m_s2, 0.0);
+            (self.steady_m_s2, self.steady_s, self.ended) = (load_m_s2, 0.0, 0);
             self.windows = <[Window; WINDOWS]>::default();
         }
     }
 
     fn look(&mut self, dt_s: f64, deforms: bool) {
         self.steady_s += dt_s;
-        let window_s = WINDOW / self.rate2.sqrt();
-        let window = (self.steady_s / window_s) as usize;
-        match window {
-            0 => {}
-            1..=WINDOWS => {
-                let sums = &mut self.windows[window - 1];
+        let over_begin = self.steady_s * self.rate2.sqrt() / BEGIN;
+        if over_begin < 1.0 {
+            return;
+        }
+        let window = over_begin.log2() as usize;
+        if window > self.ended {
+            self.ended = window.min(WINDOWS);
+            self.find(deforms);
+        }
+        match self.windows.get_mut(window) {
+            Some(sums) => {
                 sums.time_s += dt_s;
                 sums.impulse_m += dt_s * self.impulse_m_s;
                 sums.way_m += dt_s * self.velocity_m_s;
                 sums.fall_m += dt_s * self.fall_m_s;
             }
-            _ => {
-                self.watch = Watch::Over;
-                if self.windows.iter().all(|window| window.time_s > 0.0) {
-                    self.gained_m_s = self.start_of_line_m_s(deforms);
-                    self.across_m_s = if deforms { self.impulse_across_m_s() } else { 0.0 };
-                }
-            }
+            None => self.watch = Watch::Over,
         }
     }
 
-    /// Where the line of v over L begins, for a block that slides on along one, or 0.
-    fn start_of_line_m_s(&self, deforms: bool) -> f64 {
-        let Some(along) = self.windows[WINDOWS - 1].way_m.try_normalize(0.0) else { return 0.0 };
-        let [first, second, third] = self.windows.map(|window| {
-            let (speed_m_s, fall_m_s) =
-                (window.way_m.dot(&along) / window.time_s, window.fall_m / window.time_s);
-            (speed_m_s, fall_m_s)
-        });
-        let start_of = |from: (f64, f64), to: (f64, f64)| from.0 - (to.0 - from.0) / (to.1 - from.1) * from.1;
-        let (gained_m_s, again_m_s) = (start_of(first, second), start_of(second, third));
-        let slides_on = third.0 > SLIDES_ON * first.0;
-        let is_a_line = !deforms || (again_m_s - gained_m_s).abs() < SAME_LINE * gained_m_s;
-        if slides_on && is_a_line && gained_m_s < self.fastest_m_s() { gained_m_s.max(0.0) } else { 0.0 }
-    }
-
-    /// Impulse of the first oscillations across the direction of later pushes, for a block that slides on, or 0.
-    fn impulse_across_m_s(&self) -> f64 {
-        let [first, second, _] = self.windows.map(|window| window.impulse_m / window.time_s);
-        let Some(direction) = (second - first).try_normalize(0.0) else { return 0.0 };
-        let gain_m_s = first - first.dot(&direction) * direction;
-        let gained_m_s = gain_m_s.norm();
-        let [in_first, in_second, _] = &self.windows;
-        let way_m = in_first.way_m + in_second.way_m;
-        let mean_m_s = way_m.norm() / (in_first.time_s + in_second.time_s);
-        // Blocks that others push aside meanwhile go elsewhere.
-        let is_along = gain_m_s.dot(&way_m) > ALONG * gained_m_s * way_m.norm();
-        if is_along && gained_m_s <= mean_m_s.min(self.fastest_m_s()) { gained_m_s } else { 0.0 }
+    /// Finds the gain from the windows that have ended: the later, the better.
+    fn find(&mut self, deforms: bool) {
+        let ended = &self.windows[..self.ended];
+        let [.., first, second] = ended else { return };
+        if ended.iter().any(|window| window.time_s == 0.0) {
+            return;
+        }
+        let fastest_m_s = self.fastest_m_s();
+        let before = ended.len().checked_sub(3).map(|place| &ended[place]);
+        let gained_m_s = start_of_line_m_s(first, second);
+        let is_a_line =
+            |before| (start_of_line_m_s(before, first) - gained_m_s).abs() < SAME_LINE * gained_m_s;
+        let is_told = gained_m_s < fastest_m_s && (!deforms || before.is_some_and(is_a_line));
+        let across_m_s = if deforms { impulse_across_m_s(first, second) } else { 0.0 };
+        self.gained_m_s = if is_told { gained_m_s } else { 0.0 };
+        self.across_m_s = if across_m_s < fastest_m_s { across_m_s } else { 0.0 };
     }
 
     /// Largest speed that rebounds may bring [m/s].
@@ -199,6 +188,27 @@ impl Rebound {
     pub(crate) fn across_m_s(&self) -> f64 {
         self.across_m_s
     }
+}
+
+/// Where the line of v over L through two windows begins, for a block that slides on, or 0.
+fn start_of_line_m_s(first: &Window, second: &Window) -> f64 {
+    let Some(along) = second.way_m.try_normalize(0.0) else { return 0.0 };
+    let [(from_m_s, from_fall), (to_m_s, to_fall)] = [first, second]
+        .map(|window| (window.way_m.dot(&along) / window.time_s, window.fall_m / window.time_s));
+    let start_m_s = from_m_s - (to_m_s - from_m_s) / (to_fall - from_fall) * from_fall;
+    if to_m_s > SLIDES_ON * from_m_s { start_m_s.max(0.0) } else { 0.0 }
+}
+
+/// Impulse of the first oscillations across the direction of later pushes, for a block that slides on, or 0.
+fn impulse_across_m_s(first: &Window, second: &Window) -> f64 {
+    let [from_m_s, to_m_s] = [first, second].map(|window| window.impulse_m / window.time_s);
+    let Some(direction) = (to_m_s - from_m_s).try_normalize(0.0) else { return 0.0 };
+    let gain_m_s = from_m_s - from_m_s.dot(&direction) * direction;
+    let gained_m_s = gain_m_s.norm();
+    let way_m = first.way_m + second.way_m;
+    // Blocks that others push aside meanwhile go elsewhere.
+    let is_along = gain_m_s.dot(&way_m) > ALONG * gained_m_s * way_m.norm();
+    if is_along && gained_m_s * (first.time_s + second.time_s) <= way_m.norm() { gained_m_s } else { 0.0 }
 }
 
 #[cfg(test)]

@@ -81,9 +81,11 @@ pub(super) fn rebound(simulation: &Simulation) -> Option<Entry> {
     let is_on_one_plane = normals.all(|normal| first.is_some_and(|first| normal.dot(&first) > SAME_PLANE));
     let worst = if is_on_one_plane && on_a_plane.value > any.value { on_a_plane } else { any };
     let reason = format!(
-        "block `{}` may slide too fast by about {:.1} % of the largest speed, limit {:.0} %: where a load comes at once (gravity at the start, a record that jumps), its contact rebounds and the block sticks and slips in turn; raise penalty_pa (softer contact rebounds more), or let the load grow over a time that is long beside these rebounds (gravity_ramp_s)",
+        "the speed of block `{}` may be wrong, mostly too large, by about {:.1} % of the largest speed, limit {:.0} %: its contact rebounds from a load that came at once or within a short ramp, and has less friction meanwhile; raise penalty_pa, some {:.0} times for an error of {:.0} % (the error falls with its square root), or let the load grow more slowly (gravity_ramp_s), which helps less where a block slides between two planes",
         name(simulation, worst),
         100.0 * worst.value,
+        100.0 * SPEED,
+        (worst.value / SPEED).powi(2),
         100.0 * SPEED
     );
     let check = "speed gained in rebounds of contact / largest speed";
