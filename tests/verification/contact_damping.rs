@@ -1,6 +1,6 @@
 //! Damping of contact against independent equations of motion: a mass that sinks into a damped contact, two in a stack, and a block that is pushed against
-//! the dashpots of its shear springs. What is called accurate is right to 1 % of the largest speed, and masses that sink into a contact of restitution 0
-//! to 2 %, part of which their equations leave out.
+//! the dashpots of its shear springs. What is called accurate is right within 1 % of the largest speed, and within 2 % for
+//! masses that sink, part of which their equations leave out.
 
 use ndda::judge::verdict;
 use ndda::summary::LabelWord;
@@ -73,7 +73,7 @@ fn stack(count: usize, body: &str, penalty_pa: f64, restitution: f64, step_s: f6
 }
 
 /// Mean velocity of a block [m/s].
-fn velocity(simulation: &Simulation, block: u32) -> Vec3 {
+pub(crate) fn velocity(simulation: &Simulation, block: u32) -> Vec3 {
     let nodes = simulation.blocks().nodes_of(BlockId(block));
     let velocity = &simulation.state().velocity[nodes];
     velocity.iter().sum::<Vec3>() / velocity.len() as f64

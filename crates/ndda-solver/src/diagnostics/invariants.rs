@@ -51,9 +51,9 @@ pub struct Invariants {
     pub chattering_hops: Worst,
     /// Hops of a block with friction between them that could stop it: small differences grow from hop to hop.
     pub hops_with_friction: Worst,
-    /// Speed that a sliding block gained by sticking while its contact rebounded, over the largest speed.
+    /// Speed that a sliding block gained while its contact rebounded, over the largest speed.
     pub rebound_speed: Worst,
-    /// The same of a block that deforms, as its impulse tells it if it slides on one plane.
+    /// Speed that a block which deforms gained while its contact rebounded, found from the impulse of contact, over the largest speed; holds on one plane only.
     pub rebound_speed_on_a_plane: Worst,
     /// |action + reaction| / |force| over the pairs.
     pub action_reaction: f64,

@@ -4,18 +4,19 @@
 //! as that of a block on rigid contact. Where μ w exceeds that, the block sticks (v = 0) with less friction than its limit, and v + μ w grows by more. The softer
 //! contact is, the larger w is, √(g d) for a depth d at rest, and the faster the block slides from then on.
 //!
-//! On rigid contact, a block that hardly slides gains speed as the loads do, v = c L with L = ∫ g dt. What it has gained in rebounds is where the line of
-//! v over L begins that it follows after the first oscillations. So it is for blocks between others, too, whatever they touch.
+//! On rigid contact the speed of a block that hardly slides is proportional to L = ∫ g dt, the speed that its loads alone would give it. On soft contact its speed
+//! becomes a straight line over L once the first oscillations are over. The value of this line at L = 0 is the speed that rebounds have added. This holds for blocks
+//! between others, too.
 //!
-//! Blocks that deform may oscillate for longer than their contacts, and follow no line by then. On one plane, what the impulse of the first oscillations has across
-//! the direction of later pushes tells the gain over √(1 + μ²): while a block slips, contact pushes in one direction, and friction failed to do the rest.
+//! A block that deforms may still oscillate then, so that there is no line. If it lies on one plane, its impulse tells: while it slips, contact pushes in one
+//! direction, and the part of the first impulse that is perpendicular to it is what friction failed to do, the gain over √(1 + μ²).
 
 use ndda_mesh::Vec3;
 use serde::{Deserialize, Serialize};
 
 use crate::bodies::report::RigidForcing;
 
-/// Begin of the first window of time, over 1/ω_c; each is as long as all time before it. Rows of contact stiffness give an ω_c several times that of the oscillations.
+/// Time at which the first window begins, over 1/ω_c; each window is as long as all time before it. Rows of contact stiffness give an ω_c several times that of the oscillations.
 const BEGIN: f64 = 15.0;
 /// Windows, the last of which ends after 240/ω_c.
 const WINDOWS: usize = 4;
@@ -46,6 +47,8 @@ pub(crate) struct Rebound {
     impulse_m_s: Vec3,
     velocity_m_s: Vec3,
     load_m_s2: Vec3,
+    /// Speed that loads alone would have given it since the start [m/s].
+    fall_m_s: f64,
     /// The load when it last changed, and the time since then [s], in which the windows lie.
     steady_m_s2: f64,
     steady_s: f64,
@@ -53,11 +56,10 @@ pub(crate) struct Rebound {
     flies_s: f64,
     /// Largest ω_c² so far.
     rate2: f64,
-    /// ∫ g dt since then [m/s].
-    fall_m_s: f64,
     /// Windows since the load has become steady, and how many have ended.
     windows: [Window; WINDOWS],
     ended: usize,
+    /// The gain from the line of its speed, and from its impulse on one plane [m/s].
     gained_m_s: f64,
     across_m_s: f64,
 }
@@ -115,7 +117,7 @@ impl Rebound {
         } else {
             self.velocity_m_s += dt_s * self.load_m_s2;
             self.flies_s += dt_s;
-            // One that has left its contact for longer than it oscillates falls.
+            // A block that leaves its contact for longer than an oscillation falls.
             if self.flies_s * self.rate2.sqrt() > LONGEST_FLIGHT {
                 self.watch = Watch::Over;
                 return;
@@ -156,7 +158,7 @@ impl Rebound {
         }
     }
 
-    /// Finds the gain from the windows that have ended: the later, the better.
+    /// Finds the gain from the last two windows that have ended.
     fn find(&mut self, deforms: bool) {
         let ended = &self.windows[..self.ended];
         let [.., first, second] = ended else { return };
@@ -184,13 +186,13 @@ impl Rebound {
         self.gained_m_s
     }
 
-    /// The same of a block that deforms and slides on one plane, from its impulse [m/s].
+    /// Speed that a block which deforms has gained, from its impulse [m/s]; holds if it slides on one plane.
     pub(crate) fn across_m_s(&self) -> f64 {
         self.across_m_s
     }
 }
 
-/// Where the line of v over L through two windows begins, for a block that slides on, or 0.
+/// Value at L = 0 of the line of the speed through two windows [m/s]; 0 for a block that has slowed down.
 fn start_of_line_m_s(first: &Window, second: &Window) -> f64 {
     let Some(along) = second.way_m.try_normalize(0.0) else { return 0.0 };
     let [(from_m_s, from_fall), (to_m_s, to_fall)] = [first, second]
@@ -199,7 +201,7 @@ fn start_of_line_m_s(first: &Window, second: &Window) -> f64 {
     if to_m_s > SLIDES_ON * from_m_s { start_m_s.max(0.0) } else { 0.0 }
 }
 
-/// Impulse of the first oscillations across the direction of later pushes, for a block that slides on, or 0.
+/// Part of the first impulse perpendicular to later pushes [m/s]; 0 where it is not along the way of the block.
 fn impulse_across_m_s(first: &Window, second: &Window) -> f64 {
     let [from_m_s, to_m_s] = [first, second].map(|window| window.impulse_m / window.time_s);
     let Some(direction) = (to_m_s - from_m_s).try_normalize(0.0) else { return 0.0 };

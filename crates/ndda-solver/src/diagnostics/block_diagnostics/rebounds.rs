@@ -35,8 +35,8 @@ impl BlockDiagnostics {
         worst
     }
 
-    /// Largest speed that rebounds of contact have added to a block that slides, over a speed, and to one that deforms and slides on one plane; what rounding may
-    /// have done does not count.
+    /// Largest speed that rebounds of contact have added to a block, over a speed: from the line of its speed, and from its impulse, which holds on one plane only. What
+    /// rounding may have done does not count.
     pub(crate) fn rebound(&self, speed_m_s: f64, rounding_j: f64) -> (Worst, Worst) {
         let worst = |of: fn(&BlockBalance) -> f64| self.worst_speed(speed_m_s, rounding_j, of);
         (worst(|balance| balance.rebound.gained_m_s()), worst(|balance| balance.rebound.across_m_s()))

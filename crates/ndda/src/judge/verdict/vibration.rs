@@ -1,6 +1,6 @@
 //! Verdicts on blocks that vibrate on their contacts and supports, or in themselves.
 
-use ndda_solver::Simulation;
+use ndda_solver::{Simulation, Worst};
 
 use crate::waves;
 
@@ -69,19 +69,17 @@ pub(super) fn chatter(simulation: &Simulation) -> Option<Entry> {
     (worst.value > 0.0).then(|| warned(check, worst.value, MOST_CHATTERING, reason))
 }
 
-/// Whether rebounds of contact made a block slide faster; shown only beyond the limit. Shear springs, which facets remember, hold less at first, and are meant to.
+/// Whether rebounds of contact made a block slide faster; shown only beyond the limit, and not where friction has shear springs, which hold less at first, and are meant to.
 pub(super) fn rebound(simulation: &Simulation) -> Option<Entry> {
-    let (any, on_a_plane) =
-        (simulation.invariants().rebound_speed, simulation.invariants().rebound_speed_on_a_plane);
-    let contact = &simulation.state().contact;
-    // A block that deforms between others is pushed in as many directions as it touches planes: its impulse does not tell what it gained.
-    let mut normals =
-        contact.faces.iter().filter(|face| face.target.0 == on_a_plane.block).map(|face| face.normal);
-    let first = normals.next();
-    let is_on_one_plane = normals.all(|normal| first.is_some_and(|first| normal.dot(&first) > SAME_PLANE));
-    let worst = if is_on_one_plane && on_a_plane.value > any.value { on_a_plane } else { any };
+    let found = simulation.invariants();
+    let (any, on_a_plane) = (found.rebound_speed, found.rebound_speed_on_a_plane);
+    let worst = if on_a_plane.value > any.value && lies_on_one_plane(simulation, on_a_plane) {
+        on_a_plane
+    } else {
+        any
+    };
     let reason = format!(
-        "the speed of block `{}` may be wrong, mostly too large, by about {:.1} % of the largest speed, limit {:.0} %: its contact rebounds from a load that came at once or within a short ramp, and has less friction meanwhile; raise penalty_pa, some {:.0} times for an error of {:.0} % (the error falls with its square root), or let the load grow more slowly (gravity_ramp_s), which helps less where a block slides between two planes",
+        "the speed of block `{}` may be off, usually too large, by about {:.1} % of the largest speed, limit {:.0} %: a load that came at once, or over a short ramp, made its contact rebound, and friction held it less meanwhile; make penalty_pa about {:.0} times as large for an error of {:.0} % (the error falls with the square root of the penalty), or let the load grow more slowly (gravity_ramp_s), which helps less where a block slides between two planes",
         name(simulation, worst),
         100.0 * worst.value,
         100.0 * SPEED,
@@ -89,7 +87,17 @@ pub(super) fn rebound(simulation: &Simulation) -> Option<Entry> {
         100.0 * SPEED
     );
     let check = "speed gained in rebounds of contact / largest speed";
-    (worst.value > SPEED && contact.facets.is_empty()).then(|| warned(check, worst.value, SPEED, reason))
+    let has_springs = !simulation.state().contact.facets.is_empty();
+    (worst.value > SPEED && !has_springs).then(|| warned(check, worst.value, SPEED, reason))
+}
+
+/// Whether all faces that touch a block lie in one plane: between others it is pushed in as many directions as it touches planes, and its impulse does not tell what
+/// it gained.
+fn lies_on_one_plane(simulation: &Simulation, found: Worst) -> bool {
+    let faces = &simulation.state().contact.faces;
+    let mut normals = faces.iter().filter(|face| face.target.0 == found.block).map(|face| face.normal);
+    let first = normals.next();
+    normals.all(|normal| first.is_some_and(|first| normal.dot(&first) > SAME_PLANE))
 }
 
 /// Whether steps resolve the damping of contact; said only where they leave something out.
