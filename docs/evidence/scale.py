@@ -7,7 +7,7 @@
 Defaults: 1 and 2 threads, up to 1e6 tetrahedra, target/release/ndda. A size is run with two numbers of steps: their difference is what
 steps cost, without reading, setting up and making the first list of pairs; by the clock (step_ms and its stages) and by the processor
 (processor_ms, of all threads). Each size is kept in docs/evidence/scale/scale.csv once it is
-done, and passed over the next time unless --again is given, so that a run which was interrupted goes on. 1e5 blocks want 10 GB and
+done, and passed over the next time unless --again is given, so that a run which was interrupted goes on. 1e5 blocks want 2.4 GB and
 minutes. Prints slopes in log-log; --draw draws docs/evidence/scale/scale.png.
 """
 import argparse

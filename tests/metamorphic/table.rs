@@ -1,6 +1,6 @@
 //! The label's record over many scenes: a line per scene in a file that grows, and a table of them all.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{File, OpenOptions};
 use std::io::Write;
 use std::path::PathBuf;
@@ -161,7 +161,8 @@ impl Table {
             };
             *counts.entry(what).or_default() += 1;
             if (row[label], row[truth]) == ("inaccurate", "right") {
-                row[reasons].split("; ").for_each(|reason| *alarms.entry(reason).or_default() += 1);
+                let subjects: BTreeSet<&str> = row[reasons].split("; ").collect();
+                subjects.into_iter().for_each(|reason| *alarms.entry(reason).or_default() += 1);
             }
             if (row[label], row[truth]) == ("accurate", "wrong") {
                 wrong.push(row[0].parse().expect("a seed"));

@@ -99,3 +99,31 @@ fn a_block_on_one_plane_gains_what_the_program_says_and_nothing_where_it_never_s
     let (_, said_m_s) = gained_on_a_plane(20.0, 0.3);
     row(SECTION, &format!("{} [m/s]", what(20.0, 0.3)), said_m_s, AtMost(1e-3));
 }
+
+/// An elastic cube under sudden gravity, damped in proportion to mass until it rests.
+#[test]
+fn a_cube_that_damping_brings_to_rest_has_gained_nothing() {
+    for friction in ["", ", friction: (friction_deg: 30)"] {
+        let mut cube = simulation(&format!(
+            "(title: \"t\", time: (step_s: 1e-4, end_s: 1), gravity_m_s2: (0, 0, -9.8),
+              materials: [(name: \"rock\", young_pa: 20e9, poisson: 0, density_kg_m3: 2500, damping: (mass_per_s: 200))],
+              blocks: [
+                (name: \"base\", material: \"rock\", shape: Box(size_m: (3, 3, 1), cells: (3, 3, 1)), at_m: (-1, -1, -1), body: Fixed),
+                (name: \"cube\", material: \"rock\", shape: Box(size_m: (1, 1, 1), cells: (2, 2, 2)))],
+              contact: Potential(penalty_pa: 1e7{friction}))"
+        ));
+        for _ in 0..2000 {
+            cube.step().unwrap();
+        }
+        cube.sample().unwrap();
+        let worst = cube.invariants();
+        let said = worst.rebound_speed.value.max(worst.rebound_speed_on_a_plane.value);
+        let of = if friction.is_empty() { "no friction" } else { "φ = 30°" };
+        row(
+            SECTION,
+            &format!("cube at rest, {of}: speed that the program says it gained, over the largest speed"),
+            said,
+            AtMost(0.01),
+        );
+    }
+}

@@ -1,5 +1,5 @@
 //! A semicircular arch of rigid stones that cannot slide stands when its thickness over its mean radius exceeds
-//! 0.1075, and falls by hinges below (Milankovitch 1907; Heyman 1969).
+//! 0.1075, and falls by hinges below (Milankovitch 1907; Ochsendorf 2002).
 
 use std::fmt::Write;
 

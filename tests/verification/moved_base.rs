@@ -131,8 +131,7 @@ fn the_toppling_template_is_accurate() {
     );
 }
 
-/// Contact damping of a block that deforms feeds its vibrations where steps are long for them, and the block slips where Coulomb's law holds it. The energy of a base that
-/// is shaken must not hide that.
+/// Contact damping of a block that deforms feeds its vibrations where steps are long for them. The energy of a base that is shaken must not hide that.
 #[test]
 fn damping_that_feeds_a_block_on_a_shaken_base_is_not_hidden_by_the_energy_of_the_base() {
     let mut rows = String::new();

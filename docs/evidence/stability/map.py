@@ -21,7 +21,7 @@ ROOT = HERE.parents[2]
 STUDY = ROOT / "scenes/extreme/stability.ron"
 KEPT = ["integrator", "penalty", "step", "label", "error_end", "place_end", "h", "label_reasons"]
 COLOURS = {"accurate": "#9fd3a8", "inaccurate": "#f2c14e", "stopped": "#c9c9c9"}
-# What an accurate run promises: speeds to 1 % of the closing speed, places to a tenth of a tetrahedron's height.
+# What an accurate run is held to here: speeds to 1 % of the closing speed, places to a tenth of a tetrahedron's height, half of what is promised.
 SPEED, PLACE = 0.01, 0.1
 # The scene: cubes of L with tetrahedra of height L/2 over the faces, two masses of ρ L³, E.
 L, DENSITY, YOUNG = 0.1, 2650.0, 20e9

@@ -1,5 +1,5 @@
 //! A cube on the ledge of an L. The arch is tests/verification/masonry_arch.rs; that a concave block pushes as its convex
-//! parts do, and not itself, is tested in crates/ndda-contact/src/potential_contact/contact.rs.
+//! parts do, and not itself, is tested in crates/ndda-contact/src/potential_contact/contact_model.rs.
 
 use ndda_solver::Settle;
 

@@ -6,7 +6,7 @@ use ndda::{Model, Run};
 use ndda_io::OutputFolder;
 use serde_json::Value;
 
-/// Errors that an accurate run promises: speeds to 1 %, places to a tenth of a tetrahedron's height.
+/// Errors that accurate runs are held to here: speeds to 1 %, places to a tenth of a tetrahedron's height, half of what is promised.
 pub const SPEED: f64 = 0.01;
 pub const PLACE: f64 = 0.1;
 

@@ -1,6 +1,6 @@
 //! Penalties from 1e-6 to 100 E and steps from 1e-7 to 0.1 s, for every integrator: the label agrees with the closed form.
 //!
-//! Here the corners and both sides of the borders between accurate, inaccurate and stopped; `NDDA_LARGE=1` runs all 252
+//! Here three of the corners and both sides of the borders between accurate, inaccurate and stopped; `NDDA_LARGE=1` runs all 252
 //! cells, which `docs/evidence/stability/map.py` draws.
 
 use ndda::study::case::{Case, cases};

@@ -1,5 +1,5 @@
 //! Faces that coincide, corners and edges that only just meet. Zero overlap that gives exactly nothing, and the
-//! forces of concave blocks, are tested in crates/ndda-contact/src/potential_contact/contact.rs; any bits in tests/never_panics.rs there.
+//! forces of concave blocks, are tested in crates/ndda-contact/src/potential_contact/contact_model.rs; any bits in tests/never_panics.rs there.
 
 use nalgebra::Rotation3;
 use ndda::Model;

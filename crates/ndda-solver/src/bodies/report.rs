@@ -47,7 +47,7 @@ pub(crate) struct BlockReport {
 
 impl BlockReport {
     /// Everything in it, in one order.
-    fn parts(&mut self) -> ([&mut Vec3; 16], [&mut f64; 11], [&mut bool; 3]) {
+    fn parts(&mut self) -> ([&mut Vec3; 17], [&mut f64; 11], [&mut bool; 3]) {
         let Self {
             reaction,
             outside_torque,
@@ -72,6 +72,7 @@ impl BlockReport {
         let RigidForcing {
             load_m_s2,
             shift_m_s2,
+            damped_m_s,
             pressed_m_s2,
             turn_m_s2,
             is_held,
@@ -81,8 +82,10 @@ impl BlockReport {
             contact_rate2: drive_rate2,
         } = drive;
         let of_block = [reaction, outside_torque, motion_impulse, orbital_impulse, impulse, impulse_moment];
-        let of_parts =
-            [shift_m_s, turn_m_s, force, torque, contact, carried, lag, load_m_s2, shift_m_s2, turn_m_s2];
+        let of_parts = [
+            shift_m_s, turn_m_s, force, torque, contact, carried, lag, load_m_s2, shift_m_s2, damped_m_s,
+            turn_m_s2,
+        ];
         let mut vectors = of_block.into_iter().chain(of_parts);
         let numbers = [
             motion_work_j,
@@ -97,7 +100,7 @@ impl BlockReport {
             fastest_m_s,
             drive_rate2,
         ];
-        let vectors = std::array::from_fn(|_| vectors.next().expect("sixteen of them"));
+        let vectors = std::array::from_fn(|_| vectors.next().expect("seventeen of them"));
         (vectors, numbers, [is_held, touches, has_friction])
     }
 
@@ -133,6 +136,8 @@ pub(crate) struct RigidForcing {
     pub load_m_s2: Vec3,
     /// Acceleration of translation by loads, contact and supports [m/s²].
     pub shift_m_s2: Vec3,
+    /// Change of velocity in the step by damping in proportion to mass, and by prescribed velocities [m/s].
+    pub damped_m_s: Vec3,
     /// Half the sum of the sizes of contact forces on its nodes, over its mass: what presses it from both sides [m/s²]. Zero for a
     /// block that does not deform, and where contact is taken in the middle of a step.
     pub pressed_m_s2: f64,

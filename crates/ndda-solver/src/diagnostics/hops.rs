@@ -3,7 +3,7 @@
 //!
 //! Contact gives back all energy, and friction turns a part of the energy of sliding into that of rocking: a block that would stand lifts off, comes
 //! down, and lifts off again, each time for longer. A block that was dropped bounces too, but friction shortens its hops, and where it
-//! does not they are as often longer as shorter than the one before: eight that grow in a row are one in forty thousand.
+//! does not they are as often longer as shorter than the one before: nine flights in growing order are by chance one in 362 880.
 
 use ndda_mesh::Vec3;
 use serde::{Deserialize, Serialize};

@@ -8,6 +8,8 @@
 //! becomes a straight line over L once the first oscillations are over. The value of this line at L = 0 is the speed that rebounds have added. This holds for blocks
 //! between others, too.
 //!
+//! A block that damping in proportion to mass slows is not judged: its speed is no line over L.
+//!
 //! A block that deforms may still oscillate then, so that there is no line. If it lies on one plane, its impulse tells: while it slips, contact pushes in one
 //! direction, and the part of the first impulse that is perpendicular to it is what friction failed to do, the gain over √(1 + μ²).
 
@@ -22,7 +24,7 @@ const BEGIN: f64 = 15.0;
 const WINDOWS: usize = 4;
 /// Longest flight of a block whose contact rebounds, over 1/ω_c.
 const LONGEST_FLIGHT: f64 = 30.0;
-/// Part by which a load may change in the windows.
+/// Part by which a load may change in the windows, and part of its effect that damping may take in a step.
 const STEADY: f64 = 1e-3;
 /// Most steps before a block that is drawn in contact touches.
 const TOUCHES_WITHIN: f64 = 3.5;
@@ -54,8 +56,9 @@ pub(crate) struct Rebound {
     steady_s: f64,
     /// Time since it last touched [s].
     flies_s: f64,
-    /// Largest ω_c² so far.
+    /// Largest ω_c² so far, and whether friction has acted.
     rate2: f64,
+    rubs: bool,
     /// Windows since the load has become steady, and how many have ended.
     windows: [Window; WINDOWS],
     ended: usize,
@@ -104,7 +107,7 @@ impl Rebound {
         if drive.touches {
             let turns =
                 drive.load_m_s2.dot(&self.load_m_s2) < SAME * drive.load_m_s2.norm() * self.load_m_s2.norm();
-            if turns {
+            if turns || drive.damped_m_s.norm() > STEADY * dt_s * drive.load_m_s2.norm() {
                 self.watch = Watch::Over;
                 return;
             }
@@ -113,6 +116,7 @@ impl Rebound {
             self.impulse_m_s += dt_s * (drive.shift_m_s2 - drive.load_m_s2);
             self.velocity_m_s += dt_s * drive.shift_m_s2;
             self.rate2 = self.rate2.max(drive.contact_rate2);
+            self.rubs |= drive.has_friction;
             self.flies_s = 0.0;
         } else {
             self.velocity_m_s += dt_s * self.load_m_s2;
@@ -162,7 +166,7 @@ impl Rebound {
     fn find(&mut self, deforms: bool) {
         let ended = &self.windows[..self.ended];
         let [.., first, second] = ended else { return };
-        if ended.iter().any(|window| window.time_s == 0.0) {
+        if !self.rubs || ended.iter().any(|window| window.time_s == 0.0) {
             return;
         }
         let fastest_m_s = self.fastest_m_s();
@@ -236,6 +240,7 @@ mod tests {
                 load_m_s2,
                 shift_m_s2: load_m_s2 + Vec3::new(-rubs_m_s2, 0.0, push_m_s2),
                 touches: push_m_s2 > 0.0,
+                has_friction: rubs_m_s2 > 0.0,
                 speed_m_s: f64::hypot(slides_m_s, sinks_m_s),
                 contact_rate2: rate2,
                 ..RigidForcing::default()

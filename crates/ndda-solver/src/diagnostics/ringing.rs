@@ -73,6 +73,7 @@ impl RigidForcing {
             pressed_m_s2: pressed_n / operator.mass_kg,
             load_m_s2: load / operator.mass_kg,
             shift_m_s2: force / operator.mass_kg,
+            damped_m_s: report.impulse / operator.mass_kg,
             turn_m_s2,
             is_held,
             touches,

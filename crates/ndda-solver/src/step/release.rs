@@ -19,7 +19,7 @@ use crate::step::state::State;
 const RAMP_ROWS: u32 = 512;
 
 /// Forces that shrink to nothing by 1 − 3 u² + 2 u³, u being the part of the time that has gone. Its slope is zero at both ends: an oscillator of
-/// frequency ω is left with 12/(ω T)² of what the force displaced it by, at most, after a ramp of length T; a straight one leaves 2/(ω T).
+/// frequency ω is left with at most about 12/(ω T)² of what the force displaced it by after a ramp of length T; a straight one leaves 2/(ω T).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Release {
     /// Node, and force at the beginning [N].

@@ -11,7 +11,7 @@ use super::{Entry, PLACE, SPEED, name, warned};
 const MOST_VIBRATION: f64 = 12.0 * SPEED;
 /// Energy that contact damping may add, over the largest energy: the square of the error allowed in speeds.
 const MOST_GIVEN: f64 = SPEED * SPEED;
-/// Hops in a row that may each be longer than the one before: by chance one more is one in forty thousand.
+/// Hops in a row that may each be longer than the one before. One more makes nine flights in growing order: by chance one in 362 880.
 const MOST_GROWING: f64 = 7.0;
 /// Short hops of a sliding block: runs that agree with closed forms have up to 11, runs that do not have 21 and more.
 const MOST_CHATTERING: f64 = 15.0;
@@ -116,7 +116,7 @@ pub(super) fn contact_damping(simulation: &Simulation) -> Option<Entry> {
 pub(super) fn energy_from_damping(simulation: &Simulation) -> Option<Entry> {
     let gain = simulation.invariants().damping_gain;
     let reason = format!(
-        "contact damping (`restitution` below 1) added {:.2} % of the largest energy instead of removing energy, limit {:.2} %, which makes blocks vibrate: reduce step_s",
+        "contact damping (`restitution` below 1) added {:.2} % of the largest energy instead of removing energy, limit {:.2} %, which makes blocks vibrate: make blocks Rigid or Affine (body), raise the restitution, or reduce step_s until steps resolve the vibrations of blocks",
         100.0 * gain,
         100.0 * MOST_GIVEN
     );
@@ -126,9 +126,11 @@ pub(super) fn energy_from_damping(simulation: &Simulation) -> Option<Entry> {
 /// Whether steps are short enough for blocks that ring on their contacts or supports.
 pub(super) fn ringing(simulation: &Simulation) -> Entry {
     let worst = simulation.invariants().ringing;
+    let forces =
+        if simulation.has_contact() { "its contact forces" } else { "the reactions of its supports" };
     let reason = format!(
-        "the velocity of block `{}` may be wrong by {:.1} % of the largest speed, limit {:.0} %, because its contact \
-         forces vibrate or jump faster than steps resolve: reduce step_s",
+        "the velocity of block `{}` may be wrong by {:.1} % of the largest speed, limit {:.0} %, because {forces} \
+         vibrate or jump faster than steps resolve: reduce step_s",
         name(simulation, worst),
         100.0 * worst.value,
         100.0 * SPEED
