@@ -70,6 +70,7 @@ mod rocking_threshold;
 mod roof_wedge;
 mod safety_as_drawn;
 mod safety_factor;
+mod safety_held;
 mod settling;
 mod settling_of_deforming_blocks;
 mod shaken_base;

@@ -21,7 +21,7 @@ use std::path::Path;
 use ndda_io::diagnostic::{Diagnostic, SceneErrors};
 use ndda_io::read::Chosen;
 use ndda_io::read::{self, LoadedScene};
-use ndda_io::scene::{Contact, FactorRow, Potential, Scene, Stress, is_unset};
+use ndda_io::scene::{Contact, ContactAt, FactorRow, Integrator, Potential, Scene, Stress, is_unset};
 use ndda_mesh::geometry::{Aabb, tet_volume, triangle_area_vector};
 use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
 
@@ -356,8 +356,15 @@ fn step_of(
     }
     // Any step serves to ask for the stability of contact, which does not depend on it.
     scene.time.step_s = limits[0].0;
-    let mut simulation = build::simulation(scene, blocks, folder)?;
-    if let Some(advice) = step::advise(scene, &mut simulation) {
+    let mut asked = scene.clone();
+    // Schemes that are stable with any step resolve contact with those of the default one.
+    if matches!(scene.time.integrator, Integrator::Newmark { .. })
+        || scene.time.contact_at != ContactAt::Predicted
+    {
+        (asked.time.integrator, asked.time.contact_at) = Default::default();
+    }
+    let mut simulation = build::simulation(&asked, blocks, folder)?;
+    if let Some(advice) = step::advise(&asked, &mut simulation) {
         let block = &advice.worst().block;
         limits.push((
             OF_ADVISED * advice.step_s,

@@ -177,6 +177,15 @@ pub enum SafetyError {
         "a factor of safety is that of one state: give a scene without `stages`, with the blocks and loads of the stage"
     )]
     Stages,
+    /// Supports move.
+    #[error(
+        "the support of `{block}` moves, and a factor of safety is that of blocks at rest: hold it by `Fixed`, and tilt gravity_m_s2 by the \
+         acceleration of the ground, as (0, -0.15 * 9.81, -9.81) for 0.15 g"
+    )]
+    MovedSupport {
+        /// Its block.
+        block: String,
+    },
     /// No block can move.
     #[error("every block of the scene is fixed, so nothing can fail")]
     NothingFree,

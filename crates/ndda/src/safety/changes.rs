@@ -1,7 +1,6 @@
 //! Changes of a trial to the scene.
 
-use ndda_io::read::LoadedScene;
-use ndda_io::scene::{Contact, Friction, Residual, Scene};
+use ndda_io::scene::{By as SupportBy, Contact, FactorRow, Friction, Hold, Residual, Scene, Support};
 use ndda_mesh::Vec3;
 use serde::{Deserialize, Serialize};
 
@@ -40,15 +39,52 @@ pub enum By {
     },
 }
 
-/// A scene at rest under its constant loads: nothing moves at the start, and gravity is there at once.
+/// A scene at rest under its constant loads: nothing moves at the start, gravity is there at once, loads have the last of their values over time, and no damping in
+/// proportion to mass holds back what would accelerate.
 pub fn at_rest(scene: &Scene) -> Scene {
     let mut scene = scene.clone();
+    for rows in factors(&mut scene) {
+        rows.drain(..rows.len().saturating_sub(1));
+    }
+    scene.materials.iter_mut().for_each(|material| material.damping.mass_per_s = 0.0);
     scene.gravity_ramp_s = 0.0;
     scene.reference = None;
     for block in &mut scene.blocks {
         (block.velocity_m_s, block.spin_rad_s) = ([0.0; 3], [0.0; 3]);
     }
     scene
+}
+
+/// Factors over time of loads.
+fn factors(scene: &mut Scene) -> impl Iterator<Item = &mut Vec<FactorRow>> {
+    let forces = scene.forces.iter_mut().map(|load| &mut load.factor);
+    let tractions = scene.tractions.iter_mut().map(|load| &mut load.factor);
+    forces.chain(tractions).chain(scene.water.iter_mut().map(|water| &mut water.factor))
+}
+
+/// What trials take otherwise than a run of the scene does, in words.
+pub fn taken_otherwise(scene: &Scene) -> Vec<String> {
+    let varies = |rows: &mut Vec<FactorRow>| rows.windows(2).any(|pair| pair[0].factor != pair[1].factor);
+    let mut words = Vec::new();
+    if factors(&mut scene.clone()).any(varies) {
+        words.push("loads with a `factor` over time act with the last of its values".into());
+    }
+    if scene.materials.iter().any(|material| material.damping.mass_per_s > 0.0) {
+        words.push("`mass_per_s` of materials is left out: it would hold back what accelerates".into());
+    }
+    words
+}
+
+/// Name of a block whose support moves.
+pub fn moved_support(scene: &Scene) -> Option<String> {
+    let moves = |hold: &Hold| hold.is_moved() || matches!(hold, Hold::Shaking(_));
+    scene.supports.iter().find(|support| moves(&support.hold)).map(|support| support.block.clone())
+}
+
+/// Whether blocks hang on bolts or springs, which stretch far more than contact gives way before they hold or fail.
+pub fn hangs_on_springs(scene: &Scene) -> bool {
+    let is_spring = |support: &Support| matches!(support.by, SupportBy::Springs { .. });
+    !scene.bolts.is_empty() || scene.supports.iter().any(is_spring)
 }
 
 /// The scene with joints as strong as theirs over `factor`.
@@ -120,16 +156,6 @@ pub fn keeps_cohesion(scene: &Scene) -> bool {
     let keeps =
         |friction: &&mut Friction| friction.residual.is_some_and(|residual| residual.cohesion_pa > 0.0);
     frictions(&mut scene.clone()).iter().any(keeps)
-}
-
-/// Steps of a scene that leaves its step out over those of a run, in which vibrations of blocks at rest need not be resolved.
-const LONGER_STEPS: f64 = 4.0;
-
-/// The step of trials, where a run has one that was chosen for it: the longest that the bound of contact allows, which is three times the step that is unstable.
-pub fn lengthen_step(loaded: &mut LoadedScene) {
-    if loaded.chosen.iter().any(|choice| choice.path == "time.step_s") {
-        loaded.scene.time.step_s *= LONGER_STEPS;
-    }
 }
 
 /// Whether some joint has cohesion that it loses at once where it is exceeded.

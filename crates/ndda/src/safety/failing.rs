@@ -5,9 +5,12 @@ use ndda_solver::Simulation;
 use serde::{Deserialize, Serialize};
 
 use super::free_blocks::free;
+use crate::run::motion::radius_m;
 
 /// Blocks slower than this part of the fastest do not count.
 const SLOW: f64 = 0.01;
+/// Speed by rotation over that of the mass centre from which on a block turns.
+const TURNS: f64 = 0.5;
 
 /// The velocity with which a block failed, as a rigid motion.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -18,6 +21,9 @@ pub struct BlockVelocity {
     pub velocity_m_s: [f64; 3],
     /// Its spin [rad/s].
     pub spin_rad_s: [f64; 3],
+    /// Whether a point of it moves faster by its rotation than half of what its mass centre does.
+    #[serde(default)]
+    pub turns: bool,
 }
 
 /// Velocities of the blocks that move, from those of the nodes.
@@ -39,6 +45,7 @@ pub fn velocities(simulation: &Simulation, of_nodes: &[Vec3]) -> Vec<BlockVeloci
                 block: blocks.names[block.index()].clone(),
                 velocity_m_s: motion.velocity_m_s.into(),
                 spin_rad_s: motion.spin_rad_s.into(),
+                turns: radius_m(operator) * motion.spin_rad_s.norm() > TURNS * motion.velocity_m_s.norm(),
             }
         })
         .collect()

@@ -153,6 +153,8 @@ mod tests {
             wall_s: 0.0,
             broken_facets: Some([12, 40]),
             velocities: Vec::new(),
+            pushed: false,
+            followed: false,
         };
         Safety {
             schema: SCHEMA.into(),

@@ -112,6 +112,8 @@ mod tests {
             history: Vec::new(),
             broken_facets: None,
             velocities: Vec::new(),
+            pushed: false,
+            followed: false,
             steps: 10,
             wall_s: 1.0,
         };

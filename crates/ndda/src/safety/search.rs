@@ -1,12 +1,13 @@
 //! The bracket: the largest factor at which blocks stand, and the smallest at which they fail.
 
+mod confirm;
 mod failure;
 mod march;
 mod next;
 
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use std::time::Instant;
 
 use ndda_io::read::LoadedScene;
@@ -61,6 +62,8 @@ pub struct Search<'a> {
     repeated: AtomicUsize,
     /// Bits of the smallest factor at which blocks have failed, infinite so far.
     fails_at: AtomicU64,
+    /// Whether blocks that fail are followed.
+    follows: AtomicBool,
 }
 
 impl<'a> Search<'a> {
@@ -78,9 +81,12 @@ impl<'a> Search<'a> {
         if loaded.scene.rockfall.is_some() {
             return Err(SafetyError::Rockfall);
         }
+        if let Some(block) = changes::moved_support(&loaded.scene) {
+            return Err(SafetyError::MovedSupport { block });
+        }
+        let taken_otherwise = changes::taken_otherwise(&loaded.scene);
         let mut loaded = loaded.clone();
         loaded.scene = changes::at_rest(&loaded.scene);
-        changes::lengthen_step(&mut loaded);
         if nothing_loads(&loaded.scene) {
             return Err(SafetyError::NoLoads);
         }
@@ -106,7 +112,7 @@ impl<'a> Search<'a> {
             mechanism: None,
             moving_blocks: Vec::new(),
             trials: Vec::new(),
-            remarks: Vec::new(),
+            remarks: taken_otherwise,
             wall_s: 0.0,
             known_trials: 0,
             earlier_s: 0.0,
@@ -123,6 +129,7 @@ impl<'a> Search<'a> {
             (known, answer.wall_s) = (earlier.trials, earlier.wall_s);
         }
         let folder = folder.to_path_buf();
+        let follows = changes::hangs_on_springs(&loaded.scene) || confirm::were_followed(&known);
         Ok(Self {
             loaded,
             folder,
@@ -137,6 +144,7 @@ impl<'a> Search<'a> {
             answer: Mutex::new(answer),
             repeated: AtomicUsize::new(0),
             fails_at: AtomicU64::new(f64::INFINITY.to_bits()),
+            follows: AtomicBool::new(follows),
         })
     }
 
@@ -149,7 +157,7 @@ impl<'a> Search<'a> {
             false => self.mechanism(&self.bisect(before_s)?)?,
         };
         let (may_push, repeated) = (self.may_push(), self.repeated.load(Ordering::Relaxed));
-        let (none_stands, as_drawn) = (self.none_stands(), self.as_drawn());
+        let (none_stands, as_drawn, stretches) = (self.none_stands(), self.as_drawn(), self.stretches());
         let mut answer = self.answer.into_inner().expect("no trial panics");
         (answer.mechanism, answer.moving_blocks) = (mechanism, moving);
         let first = answer.moving_blocks.first();
@@ -160,6 +168,7 @@ impl<'a> Search<'a> {
         }
         let is_brittle = changes::has_brittle_cohesion(&self.loaded.scene);
         answer.remarks.extend(remarks::of(&answer, self.start.slender.as_ref(), is_brittle));
+        answer.remarks.extend(stretches);
         if repeated > 0 {
             answer.remarks.push(format!(
                 "{} repeated in smaller steps of the factor, or pushed: a large change at once swings blocks beyond where they would rest",
@@ -203,14 +212,19 @@ impl<'a> Search<'a> {
         if self.none_stands() {
             return Ok(if factor >= self.as_drawn() { State::Fails } else { State::Undecided });
         }
-        let beyond = match self.may_push() {
-            true => self.try_factor(BEYOND * factor, start, &[], 0.0)?,
-            false => return Ok(self.try_factor(factor, start, &[], 0.0)?.state),
-        };
-        match beyond.state {
-            State::Stands => Ok(State::Stands),
-            _ => Ok(self.try_factor(factor, start, &beyond.failing, 0.0)?.state),
+        let mut failing = Vec::new();
+        if self.may_push() {
+            let beyond = self.try_factor(BEYOND * factor, start, &[], 0.0)?;
+            if beyond.state == State::Stands {
+                return Ok(State::Stands);
+            }
+            failing = beyond.failing.into_iter().filter(|velocity| !velocity.turns).collect();
         }
+        let state = self.try_factor(factor, start, &failing, 0.0)?.state;
+        if state != State::Fails || self.follows.swap(true, Ordering::Relaxed) {
+            return Ok(state);
+        }
+        Ok(self.try_factor(factor, start, &failing, 0.0)?.state)
     }
 
     /// Trials side by side, outwards until there is a bracket and inwards until it is narrow, all from the same start.
@@ -218,10 +232,17 @@ impl<'a> Search<'a> {
         loop {
             let wanted = self.wanted();
             if wanted.is_empty() {
-                return Ok(self.start.snapshot.clone());
+                if self.is_confirmed(before_s)? {
+                    return Ok(self.start.snapshot.clone());
+                }
+                continue;
             }
             let failing = self.failing();
-            let run = |&factor: &f64| match self.earlier.iter().find(|trial| trial.factor == factor) {
+            let run = |&factor: &f64| match self
+                .earlier
+                .iter()
+                .find(|trial| trial.factor == factor && self.counts(trial))
+            {
                 Some(known) => {
                     self.keep(known.clone());
                     Ok(())
@@ -337,8 +358,8 @@ impl<'a> Search<'a> {
         let answer = self.answer.lock().expect("no trial panics");
         let fails = answer.trials.iter().find(|trial| trial.state == State::Fails);
         match fails {
-            Some(trial) if self.may_push() => trial.velocities.clone(),
-            _ => Vec::new(),
+            Some(trial) => self.push_of(trial),
+            None => Vec::new(),
         }
     }
 
@@ -349,10 +370,10 @@ impl<'a> Search<'a> {
     ) -> Course<'b> {
         let (start, error, stop) = (&self.start, self.plan.error.min(COARSEST), self.watch.stop);
         let tolerance = self.loaded.scene.settle.unwrap_or_default().tolerance;
-        let leans = self.by.changes_loads();
+        let (leans, follows) = (self.by.changes_loads(), self.followed_for());
         let settle_tolerance = (leans || changes::has_springs_only(&self.loaded.scene)).then_some(tolerance);
         let has_cohesion = changes::has_cohesion(&self.loaded.scene);
-        Course { start, settle_tolerance, leans, has_cohesion, error, failing, stop, is_settled }
+        Course { start, settle_tolerance, leans, follows, has_cohesion, error, failing, stop, is_settled }
     }
 }
 

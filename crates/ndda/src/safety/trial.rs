@@ -6,11 +6,16 @@
 //! if all blocks have come to rest, also where they went farther before, or if at its end each block that has gone so far has gone 10 % less in each third of
 //! the time than in the one before, and no other is faster than that acceleration would have made it. Else it goes on for up to four times as long, and then is *undecided*.
 //!
+//! Springs that are far softer than contact, as bolts are, or a column that leans on its edge let a block accelerate for 30 u, too, and hold it later. So the failure at
+//! the upper end of the bracket is *followed*, until a block has gone 1 % of its radius, or 5 % on bolts and springs; where it comes to rest instead, all failures are, and they are from the
+//! beginning where blocks hang on bolts or springs.
+//!
 //! Vibrations are damped locally, since undamped contact of rigid blocks vibrates for ever, and blocks that hardly stand slip a little in each
 //! vibration. Their mean velocity is not damped, or a tall block that rocks while it slides would be called stable.
 //!
 //! Friction makes equilibrium ambiguous: a wedge whose friction points across its line stands where one that slides does not. Blocks that
-//! stand are therefore pushed once, by the velocities with which they failed at a larger factor, and have to come to rest again. They have to
+//! stand are therefore pushed once, by the velocities with which they failed at a larger factor, and have to come to rest again; where they stood before any had failed, at
+//! the end, if theirs is the lower end of the bracket. They have to
 //! go some elastic displacements before their friction points against their slip: where one of two joints is hardly pressed, a push of 5 u left a
 //! wedge standing at 1.4 % more than its limit. Shear springs give way to a push before they slip, so that blocks on them are pushed again as long as that moves them on.
 //!
@@ -18,35 +23,37 @@
 //! its radius then fails. Scenes whose friction has springs are brought to rest first, too.
 
 mod settled;
+mod start;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use super::failing::{self, BlockVelocity};
-use super::free_blocks::{ELSEWHERE, Moved, fastest_m_s, free};
-use super::slender::Slender;
+use super::free_blocks::{ELSEWHERE, fastest_m_s, free};
 use super::watched::Watched;
-use ndda_mesh::Vec3;
-use ndda_solver::{LocalDamping, Simulation, Snapshot, StepError};
+use ndda_solver::{LocalDamping, Simulation, StepError};
 use serde::{Deserialize, Serialize};
 
 use crate::numbers::length;
 use crate::run::motion::radius_m;
 
+pub use start::Start;
+
 /// Part of the wanted error times gravity that counts as no acceleration.
 const NO_ACCELERATION: f64 = 0.02;
 /// Elastic displacements that it would bring within a trial, and that a block goes before it fails.
 const WITHIN: f64 = 10.0;
-const FAR: f64 = 30.0;
+pub const FAR: f64 = 30.0;
 /// Windows in which no block moves by more than so many elastic displacements where all rest: less than what no acceleration would bring in them.
 const RESTED: usize = 8;
 const RESTED_WITHIN: f64 = WITHIN * (RESTED as f64 / WINDOWS as f64) * (RESTED as f64 / WINDOWS as f64);
 /// Longest trial over the time in which no acceleration would move a block by those 10 u: blocks may be slow to rest.
 const LONGEST: u64 = 4;
-/// The same under changed loads: a column that stands on its edge rocks far more slowly than contact of its whole base vibrates.
+/// The same under changed loads, and where blocks are followed: a column that stands on its edge, or a block on bolts, swings far more slowly than contact of a whole base vibrates.
 const LONGEST_UNDER_LOADS: u64 = 64;
-/// Part of its radius that a block goes under changed loads before it fails.
-const FAR_UNDER_LOADS: f64 = 0.05;
+/// Part of its radius that a block goes before it fails under changed loads or on bolts and springs, and elsewhere where it is followed.
+pub const FAR_UNDER_LOADS: f64 = 0.05;
+pub const FAR_FOLLOWED: f64 = 0.01;
 /// How often the steps that a trial may take to come to rest are doubled, from those that it lasts.
 const TO_REST: u32 = 5;
 /// Fewest steps of a trial.
@@ -104,80 +111,16 @@ pub struct Trial {
     /// Velocities at the end of blocks that fail.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub velocities: Vec<BlockVelocity>,
+    /// Whether blocks were pushed by the velocities with which they failed at a larger factor.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub pushed: bool,
+    /// Whether blocks that fail were followed for 1 % of their radius, or 5 % on bolts and springs.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub followed: bool,
 }
 
-/// The scene at rest, from which trials begin.
-pub struct Start {
-    /// Its state.
-    pub snapshot: Snapshot,
-    /// Places of its nodes [m].
-    pub position: Vec<Vec3>,
-    /// Elastic displacement u [m].
-    pub elastic_m: f64,
-    /// Gravity or, where there is none, contact forces over the mass that they hold [m/s²].
-    pub gravity_m_s2: f64,
-    /// Normals into free blocks of the faces of fixed ones that they rest on.
-    pub normals: Vec<Vec3>,
-    /// CRC-32 of the blocks at rest.
-    pub blocks_crc32: u32,
-    /// Blocks that came to rest elsewhere, even with the largest strength.
-    pub moved: Vec<Moved>,
-    /// Whether these do not come to rest at all, so that no trial can begin.
-    pub still_moves: bool,
-    /// Free blocks.
-    pub free: usize,
-    /// The block that would topple first if the slope were made steeper.
-    pub slender: Option<Slender>,
-}
-
-impl Start {
-    /// Measures a scene that has come to rest under gravity [m/s²]; `softest_pa_m` is the shear stiffness of its springs.
-    ///
-    /// # Errors
-    /// [`StepError`].
-    pub fn new(
-        simulation: &mut Simulation,
-        gravity: Vec3,
-        softest_pa_m: Option<f64>,
-    ) -> Result<Self, StepError> {
-        let snapshot = simulation.snapshot();
-        let position = simulation.state().position.clone();
-        simulation.watch_contacts(true);
-        simulation.step()?;
-        let sample = simulation.sample()?;
-        let contacts = simulation.contacts();
-        // Both sides of a contact are in the list.
-        let force_n = 0.5 * contacts.iter().map(|contact| contact.push_n.norm()).sum::<f64>();
-        let stored_j = sample.contact_j.abs() + sample.strain_j.abs();
-        let normal_m = if force_n > 0.0 { 2.0 * stored_j / force_n } else { 0.0 };
-        let shear_pa = contacts
-            .iter()
-            .filter(|contact| contact.area_m2 > 0.0)
-            .map(|contact| contact.friction_n.norm() / contact.area_m2)
-            .fold(0.0, f64::max);
-        let shear_m = softest_pa_m.map_or(0.0, |stiffness| shear_pa / stiffness);
-        let mass_kg: f64 = free(simulation).map(|block| simulation.shape(block).operator.mass_kg).sum();
-        let gravity_m_s2 = if gravity.norm() > 0.0 { gravity.norm() } else { force_n / mass_kg };
-        // No size is smaller than its own rounding.
-        let size_m = position.iter().map(|x| x.amax()).fold(0.0, f64::max);
-        let elastic_m = normal_m.max(shear_m).max(1e-12 * size_m);
-        let normals = super::mechanism::normals(simulation);
-        let slender = Slender::first(simulation, gravity);
-        let rest: Vec<[f64; 3]> = simulation.blocks().rest_position.iter().map(|x| (*x).into()).collect();
-        let blocks_crc32 = ndda_io::checkpoint::fingerprint(&rest);
-        Ok(Self {
-            snapshot,
-            position,
-            elastic_m,
-            gravity_m_s2,
-            normals,
-            blocks_crc32,
-            moved: Vec::new(),
-            still_moves: false,
-            free: free(simulation).count(),
-            slender,
-        })
-    }
+fn is_false(value: &bool) -> bool {
+    !value
 }
 
 /// How a trial is run.
@@ -190,6 +133,8 @@ pub struct Course<'a> {
     pub settle_tolerance: Option<f64>,
     /// Whether loads change, under which blocks lean before they fail.
     pub leans: bool,
+    /// Part of its radius that a block has to go before it fails, where blocks are followed.
+    pub follows: Option<f64>,
     /// Whether joints have cohesion or tensile strength.
     pub has_cohesion: bool,
     /// Relative error that criteria are as fine as.
@@ -235,6 +180,8 @@ impl Course<'_> {
         };
         Some(Trial {
             factor,
+            pushed: watched.is_pushed(),
+            followed: self.follows.is_some(),
             broken_facets: self.has_cohesion.then(|| broken(simulation)),
             velocities,
             state,
@@ -252,7 +199,8 @@ impl Course<'_> {
         simulation: &mut Simulation,
         watched: &mut Watched,
     ) -> Option<Result<(State, String), StepError>> {
-        let mut far_m = self.far_m(simulation);
+        let followed = self.follows.unwrap_or(0.0);
+        let (mut far_m, mut near_m) = (self.far_m(simulation), self.near_m(simulation));
         match self.settle(simulation, watched, &far_m)? {
             Ok(None) => {}
             Ok(Some(verdict)) => return Some(Ok(verdict)),
@@ -260,7 +208,8 @@ impl Course<'_> {
         }
         if self.settle_tolerance.is_some() && !self.leans {
             // How far it went on its way to rest says nothing about what it does now.
-            far_m = watched.farther_by(FAR * self.start.elastic_m);
+            near_m = watched.farther_by(&self.beyond_elastic_m(simulation, 0.0));
+            far_m = watched.farther_by(&self.beyond_elastic_m(simulation, followed));
         }
         let (first, steps) = (simulation.state().step, self.steps(simulation.step_s()));
         let window_s = simulation.step_s() * (steps / WINDOWS) as f64;
@@ -268,7 +217,7 @@ impl Course<'_> {
         let mut damping = LocalDamping::of_vibrations(DAMPING, AVERAGED);
         let (mut pushes, mut resting) = (self.most_pushes(), 0);
         let elastic_m = self.start.elastic_m;
-        let longest = if self.leans { LONGEST_UNDER_LOADS } else { LONGEST };
+        let longest = if self.leans || self.follows.is_some() { LONGEST_UNDER_LOADS } else { LONGEST };
         for window in 1..=longest * WINDOWS {
             while simulation.state().step - first < window * steps / WINDOWS {
                 if self.stop.load(Ordering::Relaxed) || (self.is_settled)() {
@@ -280,7 +229,8 @@ impl Course<'_> {
                 }
             }
             watched.look(simulation);
-            if let Some(reason) = watched.fails(simulation, &far_m) {
+            let fails = watched.fails(simulation, &far_m).or_else(|| self.is_elsewhere(simulation, watched));
+            if let Some(reason) = fails {
                 return Some(Ok((State::Fails, reason)));
             }
             resting = if fastest_m_s(simulation) < slow_m_s { resting + 1 } else { 0 };
@@ -293,14 +243,15 @@ impl Course<'_> {
                 self.push(simulation);
                 watched.pushed();
                 (pushes, resting) = (pushes - 1, 0);
-                far_m = watched.farther_by(FAR * elastic_m);
-            } else if (rests || window >= WINDOWS) && self.is_decided(simulation, watched, &far_m) {
+                near_m = watched.farther_by(&self.beyond_elastic_m(simulation, 0.0));
+                far_m = watched.farther_by(&self.beyond_elastic_m(simulation, followed));
+            } else if (rests || window >= WINDOWS) && self.is_decided(simulation, watched, &near_m) {
                 break;
             }
         }
         // What has gone faster and faster all the time need not have gone far.
         let elastic_m = vec![FAR * elastic_m; far_m.len()];
-        let verdict = self.at_the_end(simulation, watched, &far_m);
+        let verdict = self.at_the_end(simulation, watched, &near_m);
         let is_open = verdict.0 == State::Undecided;
         let fails = is_open.then(|| watched.fails(simulation, &elastic_m)).flatten();
         Some(Ok(fails.map_or(verdict, |reason| (State::Fails, reason))))
@@ -334,12 +285,32 @@ impl Course<'_> {
         }
     }
 
-    /// How far each free block goes elastically at most [m].
+    /// How far each free block goes at most without failing [m].
     fn far_m(&self, simulation: &Simulation) -> Vec<f64> {
+        self.beyond_elastic_m(
+            simulation,
+            if self.leans { FAR_UNDER_LOADS } else { self.follows.unwrap_or(0.0) },
+        )
+    }
+
+    /// How far each free block goes at most before it has to slow down to stand [m].
+    fn near_m(&self, simulation: &Simulation) -> Vec<f64> {
+        self.beyond_elastic_m(simulation, if self.leans { FAR_UNDER_LOADS } else { 0.0 })
+    }
+
+    /// How far each free block goes elastically at most, or a part of its radius where that is more [m].
+    fn beyond_elastic_m(&self, simulation: &Simulation, part: f64) -> Vec<f64> {
         let elastic_m = FAR * self.start.elastic_m;
-        let leans_m = |block| FAR_UNDER_LOADS * radius_m(&simulation.shape(block).operator);
-        let far = |block| if self.leans { elastic_m.max(leans_m(block)) } else { elastic_m };
+        let far = |block| elastic_m.max(part * radius_m(&simulation.shape(block).operator));
         free(simulation).map(far).collect()
+    }
+
+    /// That a block which is followed, and does not hang on bolts or springs, is in another place, whether it would come to rest there or not.
+    fn is_elsewhere(&self, simulation: &Simulation, watched: &Watched) -> Option<String> {
+        let part = self.follows.filter(|part| !self.leans && *part == FAR_FOLLOWED)?;
+        let (block, gone_m) = watched.beyond(&self.far_m(simulation))?;
+        let name = &simulation.blocks().names[block.index()];
+        Some(format!("`{name}` has moved {}, more than {:.0} % of its radius", length(gone_m), 100.0 * part))
     }
 
     /// How far each free block goes at most before it counts as being in another place [m].

@@ -55,8 +55,9 @@ impl Watched {
     }
 
     /// How far each block will be when it has gone farther by so much [m].
-    pub fn farther_by(&self, far_m: f64) -> Vec<f64> {
-        self.gone_m.last().expect("the start is looked at").iter().map(|gone| gone + far_m).collect()
+    pub fn farther_by(&self, far_m: &[f64]) -> Vec<f64> {
+        let last = self.gone_m.last().expect("the start is looked at");
+        last.iter().zip(far_m).map(|(gone, far_m)| gone + far_m).collect()
     }
 
     pub fn look(&mut self, simulation: &Simulation) {
@@ -211,6 +212,6 @@ mod tests {
         let mut pushed = watched(25, gone_m);
         pushed.before = 12;
         assert!(pushed.slowing(&[30.0]) && pushed.accelerating(&[30.0]).is_none());
-        assert_eq!(pushed.beyond(&pushed.farther_by(1.0)), None);
+        assert_eq!(pushed.beyond(&pushed.farther_by(&[1.0])), None);
     }
 }

@@ -1,0 +1,217 @@
+//! Factors of safety of what accelerates and is held later, or is held by what must not count: anchors and springs, friction across the line of a wedge, loads over
+//! time, damping; against limit equilibrium.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use ndda::choose;
+use ndda::safety::{self, Plan, Question, Safety, Watch};
+use ndda_io::read;
+use ndda_mesh::Vec3;
+
+use crate::evidence::Answer::{AtLeast, AtMost};
+use crate::evidence::row;
+use crate::safety_factor::{bracket, holds, normal};
+
+const GRAVITY_M_S2: f64 = 9.81;
+const DENSITY_KG_M3: f64 = 2600.0;
+
+/// The factor of a scene that leaves out its penalty and its step.
+fn of_chosen_values(text: &str) -> Safety {
+    let loaded =
+        read::load_text("case.ron", text, &[], None).unwrap_or_else(|e| panic!("{}", e.render(false)));
+    let loaded = choose::complete(loaded, Path::new(".")).unwrap_or_else(|e| panic!("{}", e.render(false)));
+    let watch = Watch { out: None, stop: &Arc::default(), tell: &|_| {} };
+    safety::find(
+        &loaded,
+        ("case", Path::new(".")),
+        &Plan { by: Question::Strength, ..Plan::default() },
+        &watch,
+    )
+    .unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// A block of 4 × 4 × 2 m on a plane: gravity is tilted by `slope_deg`.
+struct OnPlane {
+    slope_deg: f64,
+    friction_deg: f64,
+    body: &'static str,
+    damping: &'static str,
+    more: &'static str,
+}
+
+impl OnPlane {
+    fn of(slope_deg: f64, friction_deg: f64) -> Self {
+        Self { slope_deg, friction_deg, body: "Rigid", damping: "", more: "" }
+    }
+
+    fn found(&self) -> Safety {
+        let Self { friction_deg, body, damping, more, .. } = self;
+        let (sin, cos) = self.slope_deg.to_radians().sin_cos();
+        of_chosen_values(&format!(
+            "(title: \"block\", time: (end_s: 1), gravity_m_s2: ({}, 0, {}),
+              materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: {DENSITY_KG_M3}, damping: ({damping}))],
+              blocks: [
+                (name: \"base\", material: \"rock\", body: Fixed, shape: Box(size_m: (40, 20, 3), cells: (1, 1, 1)), at_m: (-10, -8, -3)),
+                (name: \"block\", material: \"rock\", body: {body}, shape: Box(size_m: (4, 4, 2), cells: (1, 1, 1)))],
+              {more}
+              contact: Potential(potential: Smooth(), friction: (friction_deg: {friction_deg})))",
+            GRAVITY_M_S2 * sin,
+            -GRAVITY_M_S2 * cos
+        ))
+    }
+
+    /// (N tan φ)/S of the forces normal to the plane and along it, in weights of the block; `pull` is what acts beside its weight.
+    fn exact(&self, (pressed_n, held_n): (f64, f64)) -> f64 {
+        let weight_n = 4.0 * 4.0 * 2.0 * DENSITY_KG_M3 * GRAVITY_M_S2;
+        let (sin, cos) = self.slope_deg.to_radians().sin_cos();
+        (weight_n * cos + pressed_n) * self.friction_deg.to_radians().tan() / (weight_n * sin - held_n)
+    }
+}
+
+/// Its steel yields at 300 kN, after 5 m of free length have stretched by millimetres: contact gives way by micrometres.
+#[test]
+fn an_anchor_holds_a_block_up_to_its_yield() {
+    let block = OnPlane {
+        more: "bolts: [(name: \"a\", at: Line(from_m: (3.9, 2, 1.9), to_m: (-3.0282032302755097, 2, -2.1)),
+            steel: (young_pa: 200e9, area_m2: 1e-3, yield_n: 300e3), grout: (stiffness_n_m2: 2e9, strength_n_m: 1e6, from_m: 5),
+            pretension_n: 100e3, plate: ())],",
+        ..OnPlane::of(40.0, 38.0)
+    };
+    let (along, into) = (30f64.to_radians().cos(), 30f64.to_radians().sin());
+    let safety = block.found();
+    holds(
+        "block of 83 t held by an anchor at its yield",
+        &safety,
+        block.exact((300e3 * into, 300e3 * along)),
+    );
+    assert!(
+        safety.remarks.iter().any(|remark| remark.contains("only after it has moved")),
+        "{:?}",
+        safety.remarks
+    );
+}
+
+/// Springs of a support hold a block whatever its friction is.
+#[test]
+fn a_block_on_the_springs_of_a_support_never_fails() {
+    let block = OnPlane {
+        body: "Affine",
+        more: "supports: [(block: \"block\", on: Set(\"x_min\"), hold: Direction((1, 0, 0)), by: Springs(stiffness_n_m: 5e6))],",
+        ..OnPlane::of(30.0, 40.0)
+    };
+    let bracket = block.found().factor_of_safety;
+    row(
+        "safety",
+        "block on springs: largest factor that was tried, at which it stands [-]",
+        bracket.lower.unwrap(),
+        AtLeast(100.0),
+    );
+    assert_eq!(bracket.upper, None);
+}
+
+#[test]
+fn loads_over_time_act_with_their_last_value() {
+    let block = OnPlane {
+        more:
+            "water: [(on: Part(block: \"block\", region: Set(\"z_min\")), pressure: Linear(pressure_pa: 12e3),
+            factor: [(time_s: 0, factor: 0), (time_s: 10, factor: 1)])],",
+        ..OnPlane::of(25.0, 35.0)
+    };
+    let safety = block.found();
+    holds("block on water that rises in 10 s", &safety, block.exact((-12e3 * 16.0, 0.0)));
+    assert!(
+        safety.remarks.iter().any(|remark| remark.contains("last of its values")),
+        "{:?}",
+        safety.remarks
+    );
+}
+
+#[test]
+fn damping_in_proportion_to_mass_holds_nothing() {
+    let block = OnPlane { damping: "mass_per_s: 500", ..OnPlane::of(25.0, 35.0) };
+    holds("block whose rock is damped by 500 /s", &block.found(), block.exact((0.0, 0.0)));
+}
+
+/// A scheme that is stable with any step gets the step of the default one.
+#[test]
+fn a_scheme_without_a_bound_has_the_same_factor() {
+    for time in ["integrator: Newmark(), ", "contact_at: End(), "] {
+        let (sin, cos) = 25f64.to_radians().sin_cos();
+        let safety = of_chosen_values(&format!(
+            "(title: \"block\", time: ({time}end_s: 1), gravity_m_s2: ({}, 0, {}),
+              materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: 2600)],
+              blocks: [
+                (name: \"base\", material: \"rock\", body: Fixed, shape: Box(size_m: (40, 20, 3), cells: (1, 1, 1)), at_m: (-10, -8, -3)),
+                (name: \"block\", material: \"rock\", body: Rigid, shape: Box(size_m: (4, 4, 2), cells: (1, 1, 1)))],
+              contact: Potential(potential: Smooth(), friction: (friction_deg: 35)))",
+            GRAVITY_M_S2 * sin,
+            -GRAVITY_M_S2 * cos
+        ));
+        holds(
+            &format!("block on 25°, φ = 35°, {time}step left out"),
+            &safety,
+            35f64.to_radians().tan() * cos / sin,
+        );
+    }
+}
+
+/// Two planes of unlike dip and friction, under gravity with a part to the south: F = (N₁ tan φ₁ + N₂ tan φ₂)/(W · l).
+#[test]
+fn wedges_of_unlike_planes_whose_step_is_left_out_have_the_factor_of_limit_equilibrium() {
+    // Dips, dip directions and friction angles of both planes [°], size [m], and gravity to the east and north over g.
+    let cases = [
+        ([50.0, 130.0, 36.97884498518386], [45.0, 220.0, 27.799946629467318], 20.0, [0.0, 0.0]),
+        ([50.0, 130.0, 45.0], [45.0, 220.0, 35.0], 20.0, [0.0, -0.15]),
+        ([61.566, 142.089, 44.827], [37.427, 238.829, 40.548], 100.0, [0.0, -0.2]),
+    ];
+    let mut worst = 0.0f64;
+    for (a, b, size_m, [east, north]) in cases {
+        let planes = [a, b].map(|[dip_deg, direction_deg, _]| normal(dip_deg, direction_deg));
+        let middle = format!("({}, {}, {})", 0.6 * size_m, 0.5 * size_m, 0.3 * size_m);
+        let joint = |name: &str, [dip_deg, direction_deg, _]: [f64; 3]| {
+            format!(
+                "Plane(name: \"{name}\", dip_deg: {dip_deg}, dip_direction_deg: {direction_deg}, point_m: {middle})"
+            )
+        };
+        let fixed = planes
+            .map(|n| format!("Beyond(point_m: {middle}, normal: ({:e}, {:e}, {:e}))", -n.x, -n.y, -n.z));
+        let safety = of_chosen_values(&format!(
+            "(title: \"wedge\", time: (end_s: 1), gravity_m_s2: ({}, {}, -9.81),
+              materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: 2600)],
+              rock: [(name: \"s\", material: \"rock\", body: Rigid, domain: Box(min_m: (0, 0, 0), max_m: ({size_m}, {size_m}, {})),
+                joints: [{}, {}], fill: Centre, fixed: [{}, {}])],
+              contact: Potential(potential: Smooth(), rock_joints: [
+                (joint: \"a\", friction: (friction_deg: {})), (joint: \"b\", friction: (friction_deg: {}))]))",
+            east * GRAVITY_M_S2,
+            north * GRAVITY_M_S2,
+            0.6 * size_m,
+            joint("a", a),
+            joint("b", b),
+            fixed[0],
+            fixed[1],
+            a[2],
+            b[2],
+        ));
+        let exact = on_two_planes(planes, [a[2], b[2]], Vec3::new(east, north, -1.0));
+        let (lower, upper) = bracket(&safety);
+        println!("{a:?} {b:?}: {lower:.4} to {upper:.4}, exact {exact:.4}");
+        worst = worst.max(lower / exact - 1.0).max(1.0 - upper / exact);
+    }
+    row(
+        "safety",
+        "wedges of unlike planes, step left out: limit equilibrium outside of the bracket by [-]",
+        worst,
+        AtMost(0.002),
+    );
+}
+
+fn on_two_planes([a, b]: [Vec3; 2], friction_deg: [f64; 2], weight: Vec3) -> f64 {
+    let line = a.cross(&b).normalize();
+    let along = weight.dot(&line);
+    let across = weight - along * line;
+    let (cos, p) = (a.dot(&b), [-across.dot(&a), -across.dot(&b)]);
+    let pushes = [(p[0] - cos * p[1]) / (1.0 - cos * cos), (p[1] - cos * p[0]) / (1.0 - cos * cos)];
+    let held: f64 = pushes.iter().zip(friction_deg).map(|(push, deg)| push * deg.to_radians().tan()).sum();
+    held / along.abs()
+}
