@@ -62,7 +62,7 @@ NUMBER = re.compile(
 NO_CLAIM = re.compile(
     r"`[^`]*`|\]\([^)]*\)|https?://\S+|<!--.*?-->|\d{4}-\d\d-\d\d|^\d+\. "
     r"|§\s?\d[\d.]*|\b(?:[Ff]igs?\.?|[Tt]ables?|[Ee]qs?\.?|section|Chapter|p\.|pp\.|Rust|Python|version|V|X|commit)\s?\d[\d.–,a-c]*(?: (?:and|to) \d+)*"
-    r"|\b(?:19|20)\d\d\b(?!\s?(?:m|s|kg|J|N|Pa|steps|random|scenes|blocks)\b)|\bat [0-9a-f]{7,12}\b"
+    r"|(?<![.\d])\b(?:19|20)\d\d\b(?!\.\d|\s?(?:m|s|kg|J|N|Pa|steps|random|scenes|blocks)\b)|\bat [0-9a-f]{7,12}\b"
 )
 SENTENCE = re.compile(r"(?<=[.!?])\s+(?=[A-Z`*\[(])")
 

@@ -69,7 +69,7 @@ pub enum Hold {
 impl Hold {
     /// Whether it moves what it holds.
     pub fn is_moved(&self) -> bool {
-        matches!(self, Self::Motion(_) | Self::Acceleration { .. })
+        matches!(self, Self::Motion(_) | Self::Acceleration { .. } | Self::Shaking(_))
     }
 }
 

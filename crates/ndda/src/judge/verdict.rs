@@ -250,7 +250,7 @@ fn contact(simulation: &Simulation) -> [Entry; 2] {
 fn lateral_drift(simulation: &Simulation) -> [Entry; 2] {
     let worst = simulation.invariants();
     let (place, speed) = (worst.lateral_drift_place, worst.lateral_drift_speed);
-    let why = "raise penalty_pa, or give the contact friction; its neighbours press it from both sides without friction, and where contact is deep the direction of its force is uncertain";
+    let why = "raise penalty_pa, or give the contact friction: where contact is deep the direction of its force is uncertain, and little holds the block across it";
     let where_it_is = format!(
         "block `{}` drifts sideways by {:.2} of its smallest element size, limit {PLACE}: {why}",
         name(simulation, place),

@@ -1,6 +1,6 @@
 //! Changes of a trial to the scene.
 
-use ndda_io::scene::{By as SupportBy, Contact, FactorRow, Friction, Hold, Residual, Scene, Support};
+use ndda_io::scene::{By as SupportBy, Contact, FactorRow, Friction, Residual, Scene, Support};
 use ndda_mesh::Vec3;
 use serde::{Deserialize, Serialize};
 
@@ -77,8 +77,7 @@ pub fn taken_otherwise(scene: &Scene) -> Vec<String> {
 
 /// Name of a block whose support moves.
 pub fn moved_support(scene: &Scene) -> Option<String> {
-    let moves = |hold: &Hold| hold.is_moved() || matches!(hold, Hold::Shaking(_));
-    scene.supports.iter().find(|support| moves(&support.hold)).map(|support| support.block.clone())
+    scene.supports.iter().find(|support| support.hold.is_moved()).map(|support| support.block.clone())
 }
 
 /// Whether blocks hang on bolts or springs, which stretch far more than contact gives way before they hold or fail.

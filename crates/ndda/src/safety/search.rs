@@ -156,6 +156,7 @@ impl<'a> Search<'a> {
             false if self.by.changes_loads() => self.mechanism(&self.march(before_s)?)?,
             false => self.mechanism(&self.bisect(before_s)?)?,
         };
+        let leaning = mechanism.as_ref().and_then(|how: &Mechanism| self.leaning(how));
         let (may_push, repeated) = (self.may_push(), self.repeated.load(Ordering::Relaxed));
         let (none_stands, as_drawn, stretches) = (self.none_stands(), self.as_drawn(), self.stretches());
         let mut answer = self.answer.into_inner().expect("no trial panics");
@@ -168,7 +169,7 @@ impl<'a> Search<'a> {
         }
         let is_brittle = changes::has_brittle_cohesion(&self.loaded.scene);
         answer.remarks.extend(remarks::of(&answer, self.start.slender.as_ref(), is_brittle));
-        answer.remarks.extend(stretches);
+        answer.remarks.extend(leaning.into_iter().chain(stretches));
         if repeated > 0 {
             answer.remarks.push(format!(
                 "{} repeated in smaller steps of the factor, or pushed: a large change at once swings blocks beyond where they would rest",

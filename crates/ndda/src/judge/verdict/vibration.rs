@@ -79,16 +79,21 @@ pub(super) fn rebound(simulation: &Simulation) -> Option<Entry> {
         any
     };
     let reason = format!(
-        "the speed of block `{}` may be off, usually too large, by about {:.1} % of the largest speed, limit {:.0} %: a load that came at once, or over a short ramp, made its contact rebound, and friction held it less meanwhile; make penalty_pa about {:.0} times as large for an error of {:.0} % (the error falls with the square root of the penalty), or let the load grow more slowly (gravity_ramp_s), which helps less where a block slides between two planes",
+        "the speed of block `{}` may be off, usually too large, by about {:.1} % of the largest speed, limit {:.0} %: a load that came at once, or over a short ramp, made its contact rebound, and friction held it less meanwhile; make penalty_pa about {} times as large for an error of {:.0} % (the error falls with the square root of the penalty), or let the load grow more slowly (gravity_ramp_s), which helps less where a block slides between two planes",
         name(simulation, worst),
         100.0 * worst.value,
         100.0 * SPEED,
-        (worst.value / SPEED).powi(2),
+        times_as_large((worst.value / SPEED).powi(2)),
         100.0 * SPEED
     );
     let check = "speed gained in rebounds of contact / largest speed";
     let has_springs = !simulation.state().contact.facets.is_empty();
     (worst.value > SPEED && !has_springs).then(|| warned(check, worst.value, SPEED, reason))
+}
+
+/// A factor above 1, with one decimal where it is small.
+fn times_as_large(factor: f64) -> String {
+    if factor < 10.0 { format!("{factor:.1}") } else { format!("{factor:.0}") }
 }
 
 /// Whether all faces that touch a block lie in one plane: between others it is pushed in as many directions as it touches planes, and its impulse does not tell what

@@ -4,7 +4,8 @@ use ndda_solver::Snapshot;
 
 use super::Search;
 use crate::Model;
-use crate::safety::{Mechanism, MovingBlock, SafetyError, changes, film, mechanism, opened};
+use crate::lean;
+use crate::safety::{Kind, Mechanism, MovingBlock, SafetyError, changes, film, mechanism, opened};
 
 /// What blocks do that fail.
 type Found = (Option<Mechanism>, Vec<MovingBlock>);
@@ -26,6 +27,15 @@ impl Search<'_> {
         };
         let (found, filmed) = rayon::join(|| self.found(factor, from), film);
         filmed.and(found)
+    }
+
+    /// That blocks topple before a rigid edge would let them, in words, judged at the lower end of the bracket.
+    pub(super) fn leaning(&self, how: &Mechanism) -> Option<String> {
+        let lower = self.answer.lock().expect("no trial panics").factor_of_safety.lower;
+        let factor = lower.filter(|_| how.kind == Kind::Toppling)?;
+        let model = self.model(factor, &self.start.snapshot).ok()?;
+        let lean = lean::worst(&model.loaded.scene, &model.simulation)?;
+        Some(format!("blocks topple sooner than on a rigid edge, and the factor is too small: {lean}"))
     }
 
     fn found(&self, factor: f64, from: &Snapshot) -> Result<Found, SafetyError> {
