@@ -215,3 +215,57 @@ fn on_two_planes([a, b]: [Vec3; 2], friction_deg: [f64; 2], weight: Vec3) -> f64
     let held: f64 = pushes.iter().zip(friction_deg).map(|(push, deg)| push * deg.to_radians().tan()).sum();
     held / along.abs()
 }
+
+/// A key of 2 m lies in a notch of 90° whose line plunges by 15°, and is lifted off it: F = (W cos 15° − W sin 15° sin 45°/tan φ)/P, its friction acting along the line.
+/// What the load finds wedged in must not stay so.
+#[test]
+fn a_key_in_a_notch_slides_at_the_load_of_limit_equilibrium() {
+    let (sin, cos) = 15f64.to_radians().sin_cos();
+    let weight_n = 24.0 * DENSITY_KG_M3 * GRAVITY_M_S2;
+    let load_n = 0.3 * weight_n;
+    let side = |name: &str, way: f64| {
+        // Seen along the line: the face of the notch, and a block 4 m high behind it.
+        let outline = [(0.0, 0.0), (3.0, 3.0), (7.0, 3.0), (7.0, -1.0), (0.0, -1.0)];
+        let corners = |x_m: f64| outline.map(|(y, z)| format!("({x_m}, {}, {z})", way * y)).join(", ");
+        let mut faces = [[0, 1, 2, 3, 4].to_vec(), [9, 8, 7, 6, 5].to_vec()].to_vec();
+        faces.extend((0..5).map(|k| vec![(k + 1) % 5, k, k + 5, (k + 1) % 5 + 5]));
+        if way > 0.0 {
+            faces.iter_mut().for_each(|face| face.reverse());
+        }
+        format!(
+            "(name: \"{name}\", material: \"rock\", body: Fixed, shape: Polyhedron(corners_m: [{}, {}], faces: {faces:?}, fill: Centre))",
+            corners(12.0),
+            corners(-3.0)
+        )
+    };
+    let text = format!(
+        "(title: \"notch\", time: (end_s: 1), gravity_m_s2: ({}, 0, {}),
+          materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: {DENSITY_KG_M3})],
+          blocks: [{}, {},
+            (name: \"key\", material: \"rock\", body: Rigid, shape: Polyhedron(
+              corners_m: [(6, 0, 0), (6, 2, 2), (6, -2, 2), (0, 0, 0), (0, 2, 2), (0, -2, 2)],
+              faces: [[0, 1, 2], [5, 4, 3], [1, 0, 3, 4], [2, 1, 4, 5], [0, 2, 5, 3]], fill: Centre))],
+          forces: [(block: \"key\", force_n: (0, 0, {load_n}))],
+          contact: Potential(potential: Smooth(), friction: (friction_deg: 30)))",
+        GRAVITY_M_S2 * sin,
+        -GRAVITY_M_S2 * cos,
+        side("left", -1.0),
+        side("right", 1.0),
+    );
+    let loaded =
+        read::load_text("case.ron", &text, &[], None).unwrap_or_else(|e| panic!("{}", e.render(false)));
+    let loaded = choose::complete(loaded, Path::new(".")).unwrap_or_else(|e| panic!("{}", e.render(false)));
+    let watch = Watch { out: None, stop: &Arc::default(), tell: &|_| {} };
+    let plan = Plan { by: Question::Load, ..Plan::default() };
+    let safety =
+        safety::find(&loaded, ("case", Path::new(".")), &plan, &watch).unwrap_or_else(|e| panic!("{e}"));
+    let exact = weight_n * (cos - sin * 45f64.to_radians().sin() / 30f64.to_radians().tan()) / load_n;
+    let (lower, upper) = bracket(&safety);
+    let off = (lower / exact - 1.0).max(1.0 - upper / exact).max(0.0);
+    row(
+        "safety",
+        "key in a notch, lifted: limit equilibrium outside of the bracket by [-]",
+        off,
+        AtMost(0.005),
+    );
+}

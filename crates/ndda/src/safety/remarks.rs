@@ -46,9 +46,12 @@ pub fn of(answer: &Safety, slender: Option<&Slender>, is_brittle: bool) -> Vec<S
         remarks.push(format!("blocks fail at every factor from {upper:.3} on that was tried"));
     }
     if let (Some(lower), None) = (lower, upper) {
-        remarks.push(format!(
-            "blocks stand at every factor up to {lower:.3}: what is changed does not make them fail"
-        ));
+        remarks.push(match answer.by {
+            By::Gravity { .. } => format!(
+                "blocks stand at every factor up to {lower:.3}, where gravity acts almost along the plane that it is tilted on: try another --towards"
+            ),
+            _ => format!("blocks stand at every factor up to {lower:.3}: what is changed does not make them fail"),
+        });
     }
     remarks
 }

@@ -172,8 +172,8 @@ impl<'a> Search<'a> {
         answer.remarks.extend(leaning.into_iter().chain(stretches));
         if repeated > 0 {
             answer.remarks.push(format!(
-                "{} repeated in smaller steps of the factor, or pushed: a large change at once swings blocks beyond where they would rest",
-                counted(repeated, "trial was", "trials were")
+                "{} not listed and repeated in smaller steps of the factor, or with a push: a large change at once swings blocks beyond where they would rest",
+                counted(repeated, "trial is", "trials are")
             ));
         }
         // Springs that slipped on the way to rest keep their friction at its limit, and nothing pushes them.
@@ -219,7 +219,7 @@ impl<'a> Search<'a> {
             if beyond.state == State::Stands {
                 return Ok(State::Stands);
             }
-            failing = beyond.failing.into_iter().filter(|velocity| !velocity.turns).collect();
+            failing = self.pushes(beyond.failing);
         }
         let state = self.try_factor(factor, start, &failing, 0.0)?.state;
         if state != State::Fails || self.follows.swap(true, Ordering::Relaxed) {
@@ -359,7 +359,7 @@ impl<'a> Search<'a> {
         let answer = self.answer.lock().expect("no trial panics");
         let fails = answer.trials.iter().find(|trial| trial.state == State::Fails);
         match fails {
-            Some(trial) => self.push_of(trial),
+            Some(trial) => self.pushes(trial.velocities.clone()),
             None => Vec::new(),
         }
     }

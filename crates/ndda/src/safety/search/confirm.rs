@@ -76,14 +76,14 @@ impl Search<'_> {
     fn failing_beyond(&self, factor: f64) -> Vec<BlockVelocity> {
         let answer = self.answer.lock().expect("no trial panics");
         let beyond = answer.trials.iter().find(|other| other.state == State::Fails && other.factor > factor);
-        beyond.map_or_else(Vec::new, |other| self.push_of(other))
+        beyond.map_or_else(Vec::new, |other| self.pushes(other.velocities.clone()))
     }
 
-    /// Velocities to push blocks by that stand at a smaller factor than one at which they failed. Blocks that turn are not pushed: friction across its way does not
+    /// Those velocities with which blocks failed by which they are pushed where they stand. Blocks that turn are not pushed: friction across its way does not
     /// hold a column that leans, and a push topples it before its limit.
-    pub(super) fn push_of(&self, failed: &Trial) -> Vec<BlockVelocity> {
-        let velocities = failed.velocities.iter().filter(|velocity| self.may_push() && !velocity.turns);
-        velocities.cloned().collect()
+    pub(super) fn pushes(&self, mut failed: Vec<BlockVelocity>) -> Vec<BlockVelocity> {
+        failed.retain(|velocity| self.may_push() && !velocity.turns);
+        failed
     }
 
     /// Whether a trial of an earlier call counts now: where blocks are followed, no failure does of one that was not.

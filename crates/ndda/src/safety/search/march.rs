@@ -39,8 +39,9 @@ impl Search<'_> {
                 _ if stride > last => {
                     self.forget(next);
                     stride = stride.sqrt().max(last);
-                    if failing.is_empty() && self.may_push() && !tried.failing.is_empty() {
-                        failing = tried.failing;
+                    let pushes = self.pushes(tried.failing);
+                    if failing.is_empty() && !pushes.is_empty() {
+                        failing = pushes;
                         if !self.falls_back(&mut stood, &failing, before_s)? {
                             break;
                         }
