@@ -17,24 +17,20 @@ const GRAVITY_M_S2: f64 = 9.81;
 const DENSITY_KG_M3: f64 = 2600.0;
 
 /// The factor of a scene that leaves out its penalty and its step.
-fn of_chosen_values(text: &str) -> Safety {
+fn of_chosen_values(text: &str, by: Question) -> Safety {
     let loaded =
         read::load_text("case.ron", text, &[], None).unwrap_or_else(|e| panic!("{}", e.render(false)));
     let loaded = choose::complete(loaded, Path::new(".")).unwrap_or_else(|e| panic!("{}", e.render(false)));
     let watch = Watch { out: None, stop: &Arc::default(), tell: &|_| {} };
-    safety::find(
-        &loaded,
-        ("case", Path::new(".")),
-        &Plan { by: Question::Strength, ..Plan::default() },
-        &watch,
-    )
-    .unwrap_or_else(|e| panic!("{e}"))
+    let plan = Plan { by, ..Plan::default() };
+    safety::find(&loaded, ("case", Path::new(".")), &plan, &watch).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// A block of 4 × 4 × 2 m on a plane: gravity is tilted by `slope_deg`.
 struct OnPlane {
     slope_deg: f64,
     friction_deg: f64,
+    time: &'static str,
     body: &'static str,
     damping: &'static str,
     more: &'static str,
@@ -42,14 +38,14 @@ struct OnPlane {
 
 impl OnPlane {
     fn of(slope_deg: f64, friction_deg: f64) -> Self {
-        Self { slope_deg, friction_deg, body: "Rigid", damping: "", more: "" }
+        Self { slope_deg, friction_deg, time: "", body: "Rigid", damping: "", more: "" }
     }
 
     fn found(&self) -> Safety {
-        let Self { friction_deg, body, damping, more, .. } = self;
+        let Self { friction_deg, time, body, damping, more, .. } = self;
         let (sin, cos) = self.slope_deg.to_radians().sin_cos();
-        of_chosen_values(&format!(
-            "(title: \"block\", time: (end_s: 1), gravity_m_s2: ({}, 0, {}),
+        let text = format!(
+            "(title: \"block\", time: ({time}end_s: 1), gravity_m_s2: ({}, 0, {}),
               materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: {DENSITY_KG_M3}, damping: ({damping}))],
               blocks: [
                 (name: \"base\", material: \"rock\", body: Fixed, shape: Box(size_m: (40, 20, 3), cells: (1, 1, 1)), at_m: (-10, -8, -3)),
@@ -58,10 +54,11 @@ impl OnPlane {
               contact: Potential(potential: Smooth(), friction: (friction_deg: {friction_deg})))",
             GRAVITY_M_S2 * sin,
             -GRAVITY_M_S2 * cos
-        ))
+        );
+        of_chosen_values(&text, Question::Strength)
     }
 
-    /// (N tan φ)/S of the forces normal to the plane and along it, in weights of the block; `pull` is what acts beside its weight.
+    /// N tan φ/S, beside its weight with a force that presses it on the plane and one that holds it along the plane [N].
     fn exact(&self, (pressed_n, held_n): (f64, f64)) -> f64 {
         let weight_n = 4.0 * 4.0 * 2.0 * DENSITY_KG_M3 * GRAVITY_M_S2;
         let (sin, cos) = self.slope_deg.to_radians().sin_cos();
@@ -137,21 +134,11 @@ fn damping_in_proportion_to_mass_holds_nothing() {
 #[test]
 fn a_scheme_without_a_bound_has_the_same_factor() {
     for time in ["integrator: Newmark(), ", "contact_at: End(), "] {
-        let (sin, cos) = 25f64.to_radians().sin_cos();
-        let safety = of_chosen_values(&format!(
-            "(title: \"block\", time: ({time}end_s: 1), gravity_m_s2: ({}, 0, {}),
-              materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: 2600)],
-              blocks: [
-                (name: \"base\", material: \"rock\", body: Fixed, shape: Box(size_m: (40, 20, 3), cells: (1, 1, 1)), at_m: (-10, -8, -3)),
-                (name: \"block\", material: \"rock\", body: Rigid, shape: Box(size_m: (4, 4, 2), cells: (1, 1, 1)))],
-              contact: Potential(potential: Smooth(), friction: (friction_deg: 35)))",
-            GRAVITY_M_S2 * sin,
-            -GRAVITY_M_S2 * cos
-        ));
+        let block = OnPlane { time, ..OnPlane::of(25.0, 35.0) };
         holds(
             &format!("block on 25°, φ = 35°, {time}step left out"),
-            &safety,
-            35f64.to_radians().tan() * cos / sin,
+            &block.found(),
+            block.exact((0.0, 0.0)),
         );
     }
 }
@@ -176,7 +163,7 @@ fn wedges_of_unlike_planes_whose_step_is_left_out_have_the_factor_of_limit_equil
         };
         let fixed = planes
             .map(|n| format!("Beyond(point_m: {middle}, normal: ({:e}, {:e}, {:e}))", -n.x, -n.y, -n.z));
-        let safety = of_chosen_values(&format!(
+        let text = format!(
             "(title: \"wedge\", time: (end_s: 1), gravity_m_s2: ({}, {}, -9.81),
               materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: 2600)],
               rock: [(name: \"s\", material: \"rock\", body: Rigid, domain: Box(min_m: (0, 0, 0), max_m: ({size_m}, {size_m}, {})),
@@ -192,7 +179,8 @@ fn wedges_of_unlike_planes_whose_step_is_left_out_have_the_factor_of_limit_equil
             fixed[1],
             a[2],
             b[2],
-        ));
+        );
+        let safety = of_chosen_values(&text, Question::Strength);
         let exact = on_two_planes(planes, [a[2], b[2]], Vec3::new(east, north, -1.0));
         let (lower, upper) = bracket(&safety);
         println!("{a:?} {b:?}: {lower:.4} to {upper:.4}, exact {exact:.4}");
@@ -217,7 +205,7 @@ fn on_two_planes([a, b]: [Vec3; 2], friction_deg: [f64; 2], weight: Vec3) -> f64
 }
 
 /// A key of 2 m lies in a notch of 90° whose line plunges by 15°, and is lifted off it: F = (W cos 15° − W sin 15° sin 45°/tan φ)/P, its friction acting along the line.
-/// What the load finds wedged in must not stay so.
+/// Friction that pointed across the line at rest must not hold it.
 #[test]
 fn a_key_in_a_notch_slides_at_the_load_of_limit_equilibrium() {
     let (sin, cos) = 15f64.to_radians().sin_cos();
@@ -252,13 +240,7 @@ fn a_key_in_a_notch_slides_at_the_load_of_limit_equilibrium() {
         side("left", -1.0),
         side("right", 1.0),
     );
-    let loaded =
-        read::load_text("case.ron", &text, &[], None).unwrap_or_else(|e| panic!("{}", e.render(false)));
-    let loaded = choose::complete(loaded, Path::new(".")).unwrap_or_else(|e| panic!("{}", e.render(false)));
-    let watch = Watch { out: None, stop: &Arc::default(), tell: &|_| {} };
-    let plan = Plan { by: Question::Load, ..Plan::default() };
-    let safety =
-        safety::find(&loaded, ("case", Path::new(".")), &plan, &watch).unwrap_or_else(|e| panic!("{e}"));
+    let safety = of_chosen_values(&text, Question::Load);
     let exact = weight_n * (cos - sin * 45f64.to_radians().sin() / 30f64.to_radians().tan()) / load_n;
     let (lower, upper) = bracket(&safety);
     let off = (lower / exact - 1.0).max(1.0 - upper / exact).max(0.0);

@@ -179,8 +179,8 @@ pub enum SafetyError {
     Stages,
     /// Supports move.
     #[error(
-        "the support of `{block}` moves, and a factor of safety is that of blocks at rest: hold it by `Fixed`, and tilt gravity_m_s2 by the \
-         acceleration of the ground, as (0, -0.15 * 9.81, -9.81) for 0.15 g"
+        "the support of `{block}` moves, and a factor of safety is that of blocks at rest: hold it by `Fixed`, and add the inertial acceleration \
+         to gravity_m_s2, such as (0, -1.4715, -9.81) for 0.15 g"
     )]
     MovedSupport {
         /// Its block.

@@ -62,7 +62,7 @@ fn factors(scene: &mut Scene) -> impl Iterator<Item = &mut Vec<FactorRow>> {
     forces.chain(tractions).chain(scene.water.iter_mut().map(|water| &mut water.factor))
 }
 
-/// What trials take otherwise than a run of the scene does, in words.
+/// Notes on loads and damping of the scene that trials do not take as a run does.
 pub fn taken_otherwise(scene: &Scene) -> Vec<String> {
     let varies = |rows: &mut Vec<FactorRow>| rows.windows(2).any(|pair| pair[0].factor != pair[1].factor);
     let mut words = Vec::new();

@@ -248,7 +248,7 @@ impl Course<'_> {
             }
         }
         // What has gone faster and faster all the time need not have gone far.
-        let elastic_m = vec![FAR * elastic_m; far_m.len()];
+        let elastic_m = self.beyond_elastic_m(simulation, 0.0);
         let verdict = self.at_the_end(simulation, watched, &near_m);
         let is_open = verdict.0 == State::Undecided;
         let fails = is_open.then(|| watched.fails(simulation, &elastic_m)).flatten();
@@ -303,7 +303,7 @@ impl Course<'_> {
         free(simulation).map(far).collect()
     }
 
-    /// That a block which is followed, and does not hang on bolts or springs, is in another place, whether it would come to rest there or not.
+    /// That a block has moved as far as it is followed, in a scene without bolts and springs: it fails, even if it would come to rest there.
     fn is_elsewhere(&self, simulation: &Simulation, watched: &Watched) -> Option<String> {
         let part = self.follows.filter(|part| !self.leans && *part == FAR_FOLLOWED)?;
         let (block, gone_m) = watched.beyond(&self.far_m(simulation))?;
@@ -313,10 +313,7 @@ impl Course<'_> {
 
     /// How far each free block goes at most before it counts as being in another place [m].
     fn elsewhere_m(&self, simulation: &Simulation) -> Vec<f64> {
-        let far_m = FAR * self.start.elastic_m;
-        free(simulation)
-            .map(|block| far_m.max(ELSEWHERE * radius_m(&simulation.shape(block).operator)))
-            .collect()
+        self.beyond_elastic_m(simulation, ELSEWHERE)
     }
 
     fn at_the_end(&self, simulation: &Simulation, watched: &Watched, far_m: &[f64]) -> (State, String) {

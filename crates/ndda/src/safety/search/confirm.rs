@@ -28,7 +28,6 @@ impl Search<'_> {
         if let Some(trial) = of(lower).filter(|trial| !trial.pushed && !failing.is_empty()) {
             self.replace(|other| other.factor == trial.factor);
             self.try_factor(trial.factor, &self.start.snapshot, &failing, before_s)?;
-            self.mark(trial.factor, |repeated| repeated.pushed = true);
             return Ok(false);
         }
         Ok(true)
@@ -65,7 +64,7 @@ impl Search<'_> {
         let is_far = trial.followed && gone_m > FAR * self.start.elastic_m;
         is_far.then(|| {
             format!(
-                "`{}` stands at {lower:.4} only after it has moved {}: bolts, springs or the edges of blocks hold it by then",
+                "`{}` stands at {lower:.4} only after it has moved {}: if that is too far, take a smaller factor from the table of trials",
                 trial.block,
                 length(gone_m)
             )
@@ -79,8 +78,8 @@ impl Search<'_> {
         beyond.map_or_else(Vec::new, |other| self.pushes(other.velocities.clone()))
     }
 
-    /// Those velocities with which blocks failed by which they are pushed where they stand. Blocks that turn are not pushed: friction across its way does not
-    /// hold a column that leans, and a push topples it before its limit.
+    /// The velocities at failure of the blocks that did not turn, by which they are pushed where they stand at a smaller factor. Blocks that turn are not pushed,
+    /// since a push topples a column before its limit.
     pub(super) fn pushes(&self, mut failed: Vec<BlockVelocity>) -> Vec<BlockVelocity> {
         failed.retain(|velocity| self.may_push() && !velocity.turns);
         failed
@@ -98,10 +97,5 @@ impl Search<'_> {
         answer.factor_of_safety = bracket(&answer.trials);
         let fails_at = answer.factor_of_safety.upper.unwrap_or(f64::INFINITY);
         self.fails_at.store(fails_at.to_bits(), Ordering::Relaxed);
-    }
-
-    fn mark(&self, factor: f64, change: impl Fn(&mut Trial)) {
-        let mut answer = self.answer.lock().expect("no trial panics");
-        answer.trials.iter_mut().filter(|trial| trial.factor == factor).for_each(change);
     }
 }
