@@ -192,11 +192,7 @@ pub(crate) fn limit_equilibrium([a, b]: [(f64, f64); 2], friction_deg: f64) -> (
     let (n_a, n_b) = (normal(a.0, a.1), normal(b.0, b.1));
     let line = n_a.cross(&n_b).normalize();
     let weight = -Vec3::z();
-    let across = weight - weight.dot(&line) * line;
-    // across + N_a n_a + N_b n_b = 0.
-    let cos = n_a.dot(&n_b);
-    let (p_a, p_b) = (-across.dot(&n_a), -across.dot(&n_b));
-    let pushes = [(p_a - cos * p_b) / (1.0 - cos * cos), (p_b - cos * p_a) / (1.0 - cos * cos)];
+    let pushes = pushes_of_planes([n_a, n_b], weight);
     let friction = friction_deg.to_radians().tan();
     match pushes {
         [push_a, push_b] if push_a > 0.0 && push_b > 0.0 => {
@@ -207,6 +203,14 @@ pub(crate) fn limit_equilibrium([a, b]: [(f64, f64); 2], friction_deg: f64) -> (
             (friction / dip_deg.to_radians().tan(), Kind::Sliding)
         }
     }
+}
+
+/// Pushes N of two planes, along their normals n, on a wedge of this weight that slides on both: N_a n_a + N_b n_b takes up what is across their line of intersection.
+pub(crate) fn pushes_of_planes([a, b]: [Vec3; 2], weight: Vec3) -> [f64; 2] {
+    let line = a.cross(&b).normalize();
+    let across = weight - weight.dot(&line) * line;
+    let (cos, p_a, p_b) = (a.dot(&b), -across.dot(&a), -across.dot(&b));
+    [(p_a - cos * p_b) / (1.0 - cos * cos), (p_b - cos * p_a) / (1.0 - cos * cos)]
 }
 
 pub(crate) fn wedge(planes: [(f64, f64); 2], friction_deg: f64) -> String {

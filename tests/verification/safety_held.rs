@@ -11,7 +11,7 @@ use ndda_mesh::Vec3;
 
 use crate::evidence::Answer::{AtLeast, AtMost};
 use crate::evidence::row;
-use crate::safety_factor::{bracket, holds, normal};
+use crate::safety_factor::{bracket, holds, normal, pushes_of_planes};
 
 const GRAVITY_M_S2: f64 = 9.81;
 const DENSITY_KG_M3: f64 = 2600.0;
@@ -195,13 +195,9 @@ fn wedges_of_unlike_planes_whose_step_is_left_out_have_the_factor_of_limit_equil
 }
 
 fn on_two_planes([a, b]: [Vec3; 2], friction_deg: [f64; 2], weight: Vec3) -> f64 {
-    let line = a.cross(&b).normalize();
-    let along = weight.dot(&line);
-    let across = weight - along * line;
-    let (cos, p) = (a.dot(&b), [-across.dot(&a), -across.dot(&b)]);
-    let pushes = [(p[0] - cos * p[1]) / (1.0 - cos * cos), (p[1] - cos * p[0]) / (1.0 - cos * cos)];
-    let held: f64 = pushes.iter().zip(friction_deg).map(|(push, deg)| push * deg.to_radians().tan()).sum();
-    held / along.abs()
+    let pushes = pushes_of_planes([a, b], weight).into_iter();
+    let held: f64 = pushes.zip(friction_deg).map(|(push, deg)| push * deg.to_radians().tan()).sum();
+    held / weight.dot(&a.cross(&b).normalize()).abs()
 }
 
 /// A key of 2 m lies in a notch of 90° whose line plunges by 15°, and is lifted off it: F = (W cos 15° − W sin 15° sin 45°/tan φ)/P, its friction acting along the line.

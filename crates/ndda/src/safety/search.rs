@@ -371,10 +371,10 @@ impl<'a> Search<'a> {
     ) -> Course<'b> {
         let (start, error, stop) = (&self.start, self.plan.error.min(COARSEST), self.watch.stop);
         let tolerance = self.loaded.scene.settle.unwrap_or_default().tolerance;
-        let (leans, follows) = (self.by.changes_loads(), self.followed_for());
+        let (leans, follow) = (self.by.changes_loads(), self.follow_now());
         let settle_tolerance = (leans || changes::has_springs_only(&self.loaded.scene)).then_some(tolerance);
         let has_cohesion = changes::has_cohesion(&self.loaded.scene);
-        Course { start, settle_tolerance, leans, follows, has_cohesion, error, failing, stop, is_settled }
+        Course { start, settle_tolerance, leans, follow, has_cohesion, error, failing, stop, is_settled }
     }
 }
 

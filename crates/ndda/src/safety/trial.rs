@@ -52,8 +52,8 @@ const LONGEST: u64 = 4;
 /// The same under changed loads, and where blocks are followed: a column that stands on its edge, or a block on bolts, swings far more slowly than contact of a whole base vibrates.
 const LONGEST_UNDER_LOADS: u64 = 64;
 /// Part of its radius that a block goes before it fails under changed loads or on bolts and springs, and elsewhere where it is followed.
-pub const FAR_UNDER_LOADS: f64 = 0.05;
-pub const FAR_FOLLOWED: f64 = 0.01;
+const FAR_UNDER_LOADS: f64 = 0.05;
+const FAR_FOLLOWED: f64 = 0.01;
 /// How often the steps that a trial may take to come to rest are doubled, from those that it lasts.
 const TO_REST: u32 = 5;
 /// Fewest steps of a trial.
@@ -67,8 +67,9 @@ const SLOW: f64 = 0.1;
 const RESTING: u32 = 2;
 /// Elastic displacements that a push moves blocks by which half the wanted error times gravity slows down.
 const PUSHED: f64 = 20.0;
-/// How often blocks are pushed on that stand on springs, which give way to a push before they slip, and elastic displacements that a push has to move them by for another one.
-const PUSHES_ON_SPRINGS: u32 = 10;
+/// How often blocks are pushed on that changed loads have wedged in, or that stand on springs, which give way to a push before they slip, and elastic displacements that a
+/// push has to move them by for another one.
+const MOST_PUSHES: u32 = 10;
 const PUSHED_ON: f64 = 0.5;
 /// Local damping of vibrations in trials, and the steps over which velocities are averaged.
 const DAMPING: f64 = 0.8;
@@ -121,6 +122,28 @@ fn is_false(value: &bool) -> bool {
     !value
 }
 
+/// How far blocks that accelerate go before they fail.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Follow {
+    /// They fail once they accelerate.
+    No,
+    /// For a part of their radius: then they are in another place, even if they would come to rest there.
+    ToAnotherPlace,
+    /// For a larger part, on bolts and springs, which stretch before they hold.
+    OnSprings,
+}
+
+impl Follow {
+    /// That part of the radius of a block.
+    fn part(self) -> f64 {
+        match self {
+            Self::No => 0.0,
+            Self::ToAnotherPlace => FAR_FOLLOWED,
+            Self::OnSprings => FAR_UNDER_LOADS,
+        }
+    }
+}
+
 /// How a trial is run.
 pub struct Course<'a> {
     /// Where it begins.
@@ -131,8 +154,8 @@ pub struct Course<'a> {
     pub settle_tolerance: Option<f64>,
     /// Whether loads change, under which blocks lean before they fail.
     pub leans: bool,
-    /// Part of its radius that a block has to go before it fails, where blocks are followed.
-    pub follows: Option<f64>,
+    /// How far blocks that accelerate go before they fail, where loads do not change.
+    pub follow: Follow,
     /// Whether joints have cohesion or tensile strength.
     pub has_cohesion: bool,
     /// Relative error that criteria are as fine as.
@@ -179,7 +202,7 @@ impl Course<'_> {
         Some(Trial {
             factor,
             pushed: watched.is_pushed(),
-            followed: self.follows.is_some(),
+            followed: self.follow != Follow::No,
             broken_facets: self.has_cohesion.then(|| broken(simulation)),
             velocities,
             state,
@@ -197,7 +220,7 @@ impl Course<'_> {
         simulation: &mut Simulation,
         watched: &mut Watched,
     ) -> Option<Result<(State, String), StepError>> {
-        let followed = self.follows.unwrap_or(0.0);
+        let followed = self.follow.part();
         let (mut far_m, mut near_m) = (self.far_m(simulation), self.near_m(simulation));
         match self.settle(simulation, watched, &far_m)? {
             Ok(None) => {}
@@ -215,7 +238,7 @@ impl Course<'_> {
         let mut damping = LocalDamping::of_vibrations(DAMPING, AVERAGED);
         let (mut pushes, mut resting) = (self.most_pushes(), 0);
         let elastic_m = self.start.elastic_m;
-        let longest = if self.leans || self.follows.is_some() { LONGEST_UNDER_LOADS } else { LONGEST };
+        let longest = if self.leans || self.follow != Follow::No { LONGEST_UNDER_LOADS } else { LONGEST };
         for window in 1..=longest * WINDOWS {
             while simulation.state().step - first < window * steps / WINDOWS {
                 if self.stop.load(Ordering::Relaxed) || (self.is_settled)() {
@@ -266,7 +289,7 @@ impl Course<'_> {
         let gives_way = self.settle_tolerance.is_some();
         match (self.failing.is_empty(), gives_way) {
             (true, _) => 0,
-            (false, true) => PUSHES_ON_SPRINGS,
+            (false, true) => MOST_PUSHES,
             (false, false) => 1,
         }
     }
@@ -285,10 +308,7 @@ impl Course<'_> {
 
     /// How far each free block goes at most without failing [m].
     fn far_m(&self, simulation: &Simulation) -> Vec<f64> {
-        self.beyond_elastic_m(
-            simulation,
-            if self.leans { FAR_UNDER_LOADS } else { self.follows.unwrap_or(0.0) },
-        )
+        self.beyond_elastic_m(simulation, if self.leans { FAR_UNDER_LOADS } else { self.follow.part() })
     }
 
     /// How far each free block goes at most before it has to slow down to stand [m].
@@ -305,10 +325,16 @@ impl Course<'_> {
 
     /// That a block has moved as far as it is followed, in a scene without bolts and springs: it fails, even if it would come to rest there.
     fn is_elsewhere(&self, simulation: &Simulation, watched: &Watched) -> Option<String> {
-        let part = self.follows.filter(|part| !self.leans && *part == FAR_FOLLOWED)?;
+        if self.leans || self.follow != Follow::ToAnotherPlace {
+            return None;
+        }
         let (block, gone_m) = watched.beyond(&self.far_m(simulation))?;
         let name = &simulation.blocks().names[block.index()];
-        Some(format!("`{name}` has moved {}, more than {:.0} % of its radius", length(gone_m), 100.0 * part))
+        Some(format!(
+            "`{name}` has moved {}, more than {:.0} % of its radius",
+            length(gone_m),
+            100.0 * FAR_FOLLOWED
+        ))
     }
 
     /// How far each free block goes at most before it counts as being in another place [m].

@@ -6,7 +6,7 @@ use super::Search;
 use super::next::bracket;
 use crate::numbers::length;
 use crate::safety::changes;
-use crate::safety::trial::{FAR, FAR_FOLLOWED, FAR_UNDER_LOADS, State, Trial};
+use crate::safety::trial::{FAR, Follow, State, Trial};
 use crate::safety::{BlockVelocity, Bracket, SafetyError};
 
 /// Whether trials of an earlier call have shown that blocks which accelerate may come to rest, so that those that fail have to be followed.
@@ -33,10 +33,13 @@ impl Search<'_> {
         Ok(true)
     }
 
-    /// Part of its radius for which a block that fails is followed, if it is.
-    pub(super) fn followed_for(&self) -> Option<f64> {
-        let part = if changes::hangs_on_springs(&self.loaded.scene) { FAR_UNDER_LOADS } else { FAR_FOLLOWED };
-        self.follows.load(Ordering::Relaxed).then_some(part)
+    /// How far blocks that accelerate go before they fail.
+    pub(super) fn follow_now(&self) -> Follow {
+        match self.follows.load(Ordering::Relaxed) {
+            false => Follow::No,
+            true if changes::hangs_on_springs(&self.loaded.scene) => Follow::OnSprings,
+            true => Follow::ToAnotherPlace,
+        }
     }
 
     /// Runs a trial in which blocks fail until they have gone a part of their radius; where they do not, other failures do not count either.
