@@ -28,7 +28,8 @@ def table(header, rows):
 def times(folder):
     """A row per curve: the time to each largest error, and how often that of the fastest it is."""
     cells = [row for row in read(folder / "time_to_error.csv") if row["of"] == "max"]
-    errors = list(dict.fromkeys(row["error"] for row in cells))
+    # An error of more than all there is says nothing of accuracy.
+    errors = [error for error in dict.fromkeys(row["error"] for row in cells) if float(error) <= 1]
     found = {(row["curve"], row["error"]): row for row in cells}
 
     def cell(curve, error):
@@ -47,7 +48,7 @@ def front(folder):
     cases = read(folder / "study.csv")
     columns = list(cases[0])
     axes = columns[1 : columns.index("status")]
-    rows = [row for row in cases if row["front_max"] == "true"]
+    rows = [row for row in cases if row["front_max"] == "true" and float(row["error_max"]) <= 1]
     rows.sort(key=time_s)
     rows = [[*(row[axis] for axis in axes), f"{float(row['error_max']):.1e}", f"{time_s(row):.2g}"] for row in rows]
     return table([*axes, "largest error", "time [s]"], rows)
