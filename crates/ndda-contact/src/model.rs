@@ -26,6 +26,8 @@ pub struct ContactInput<'a> {
     pub is_iterated: bool,
     /// Whether only normal forces and stiffness are asked for: friction that acts on velocities may be left out.
     pub without_friction: bool,
+    /// Whether bonds hold whatever they carry, as while a scene comes to rest: how far it swings on the way must not break them.
+    pub bonds_hold: bool,
     /// Tolerance of friction, as a fraction of the largest on a block, where only the final rest counts, as while a scene settles; zero where the motion itself
     /// counts.
     pub friction_tolerance: f64,
@@ -76,6 +78,7 @@ impl<'a> ContactInput<'a> {
             deformation: None,
             is_iterated: false,
             without_friction: false,
+            bonds_hold: false,
             friction_tolerance: 0.0,
             ranks: None,
         }
@@ -182,6 +185,8 @@ pub struct ContactReport {
     pub dashpot_error_m_s: f64,
     /// By how much the strength of a bond was exceeded that broke in this evaluation, over its strength without normal stress.
     pub bond_overload: f64,
+    /// Bonds that would have broken or slipped in this evaluation, were they not to hold.
+    pub overloaded_bonds: usize,
 }
 
 /// Why contact forces could not be computed.

@@ -82,9 +82,9 @@ pub enum StepError {
     },
     /// A scene that was to settle first does not.
     #[error(
-        "the scene has not come to rest in {steps} steps ({}{}). Block `{block}` has moved {} \
+        "the scene has not come to rest in {steps} steps ({}{}){}. Block `{block}` has moved {} \
          towards ({:.2}, {:.2}, {:.2}), and {} at least half as far: {}",
-        speed_left(*speed_ratio), no_less(*stalled), metres(*gone_m), towards[0], towards[1], towards[2], other_blocks(*others),
+        speed_left(*speed_ratio), no_less(*stalled), let_go(*overloaded_bonds), metres(*gone_m), towards[0], towards[1], towards[2], other_blocks(*others),
         cure_of_unrest(*stalled)
     )]
     NotSettled {
@@ -102,6 +102,8 @@ pub enum StepError {
         others: usize,
         /// Steps in which the speed left has not become less, where that was why it was given up.
         stalled: Option<u64>,
+        /// Bonds that carried more than their strength at rest, and were let go.
+        overloaded_bonds: usize,
     },
     /// An element is inside out.
     #[error(
@@ -161,6 +163,16 @@ fn speed_left(ratio: f64) -> String {
 /// For how many steps the speed left has not become less.
 fn no_less(stalled: Option<u64>) -> String {
     stalled.map_or_else(String::new, |steps| format!(", and no less for {steps} steps"))
+}
+
+/// That it rested as long as all bonds held.
+fn let_go(bonds: usize) -> String {
+    match bonds {
+        0 => String::new(),
+        _ => format!(
+            ", but rested while its joints held whatever they carry, {bonds} of their bonds more than their strength"
+        ),
+    }
 }
 
 /// What helps a scene to come to rest.

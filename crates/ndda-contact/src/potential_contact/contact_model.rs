@@ -52,13 +52,14 @@ impl ContactModel for PotentialContact {
         }
         self.bond_forces.clear();
         if let Some(joints) = self.joints.as_ref().filter(|_| !history.bonds.is_empty()) {
-            report.bond_overload = bond::break_overloaded(
+            let overloaded = bond::break_overloaded(
                 joints,
                 &self.integrals,
                 &self.penalty_of_facet,
                 input,
                 (history, &mut self.new_state),
             );
+            (report.bond_overload, report.overloaded_bonds) = overloaded;
             bond::find_forces(joints, input, &history.bonds, &mut self.bond_forces);
         }
         let has_friction = self.rubs_faces() && !input.bodies.is_empty() && !input.without_friction;

@@ -153,6 +153,7 @@ impl Simulation {
             deformation: facet_velocity.is_none().then_some(&deformation as &dyn Deformation),
             is_iterated: facet_velocity.is_some(),
             without_friction: self.scratch.is_without_friction,
+            bonds_hold: self.settling.is_some_and(|settling| settling.bonds_hold),
             friction_tolerance: self.settling.map_or(0.0, |settling| settling.friction_tolerance),
             ranks: self.ranks.partners(),
         };

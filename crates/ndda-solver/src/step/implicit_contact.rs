@@ -311,6 +311,7 @@ impl Simulation {
             is_iterated: true,
             friction_tolerance: 0.0,
             without_friction: false,
+            bonds_hold: true,
             ranks: self.ranks.partners(),
         };
         let found = model.add_stiffness(&input, &self.state.contact, &mut newton.pairs);

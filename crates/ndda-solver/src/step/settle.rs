@@ -6,6 +6,9 @@
 //! would stop the slow one of the whole again and again. Blocks that deform oscillate too quickly to be stopped at a peak, where their masses are scaled: with
 //! adaptive damping, all velocities are damped in proportion ([`AdaptiveDamping`](crate::step::adaptive_damping::AdaptiveDamping)). With local damping, each block is damped by itself, in proportion to its
 //! unbalanced force ([`LocalDamping`](crate::LocalDamping)).
+//!
+//! On the way a scene swings beyond its rest, and bonds would break that carry less than their strength at rest. They hold, therefore, until the scene rests; those
+//! that carry more are let go then, and it comes to rest once more.
 
 use std::ops::ControlFlow;
 
@@ -53,6 +56,8 @@ pub struct Settled {
     pub speed_ratio: f64,
     /// The smallest and the largest factor on the inertia of blocks in the last step; none without mass scaling.
     pub inertia_factors: Option<[f64; 2]>,
+    /// Bonds that carried more than their strength when the scene first rested, and were let go.
+    pub overloaded_bonds: usize,
 }
 
 /// A scene on its way to rest: all that settling keeps between two steps, besides the state of the simulation.
@@ -68,11 +73,13 @@ pub struct Settling {
     masses: Option<Box<ScaledMasses>>,
     /// Least speed over the largest so far, and the step of that.
     least: (f64, u64),
+    /// Whether bonds still hold whatever they carry.
+    bonds_hold: bool,
 }
 
 impl Settling {
     fn new(simulation: &Simulation, progress: Progress, start: Vec<Vec3>) -> Self {
-        let settled = Settled { steps: 0, speed_ratio: f64::INFINITY, inertia_factors: None };
+        let settled = Settled { speed_ratio: f64::INFINITY, ..Settled::default() };
         Self {
             settled,
             from: simulation.state.position.clone(),
@@ -80,7 +87,20 @@ impl Settling {
             progress,
             masses: None,
             least: (f64::INFINITY, 0),
+            bonds_hold: true,
         }
+    }
+
+    /// Lets bonds go that carry more than their strength, from where the scene rests; whether there are any.
+    fn lets_go(&mut self, progress: Progress) -> bool {
+        let lets_go = self.bonds_hold && self.settled.overloaded_bonds > 0;
+        if lets_go {
+            self.progress = progress;
+            self.settled.speed_ratio = f64::INFINITY;
+            self.least = (f64::INFINITY, self.settled.steps);
+        }
+        self.bonds_hold = false;
+        lets_go
     }
 
     /// Takes the speed that is left; how many steps it has not become less for, once these are many.
@@ -165,7 +185,10 @@ impl Simulation {
         watch: &mut dyn FnMut(&Settled) -> ControlFlow<()>,
     ) -> Result<bool, StepError> {
         self.scale_masses(settling.masses.take())?;
-        let rests = self.come_to_rest((settle, settling), &Ramp::default(), watch);
+        let mut rests = self.come_to_rest((settle, settling), &Ramp::default(), watch);
+        if matches!(rests, Ok(Some(_))) && settling.lets_go(Progress::new(self, self.damping_of(settle))) {
+            rests = self.come_to_rest((settle, settling), &Ramp::default(), watch);
+        }
         settling.masses = self.unscale_masses()?;
         if rests?.is_none() {
             return Ok(false);
@@ -203,8 +226,12 @@ impl Simulation {
             if steps == settle.most_steps || leaves || stalled.is_some() {
                 return Err(self.not_settled(settling, stalled));
             }
-            self.settling = Some(SettlingStep::new(ramp.at_s(steps), speed_ratio.max(settle.tolerance)));
+            let (at_s, ratio) = (ramp.at_s(steps), speed_ratio.max(settle.tolerance));
+            self.settling = Some(SettlingStep::new(at_s, ratio, settling.bonds_hold));
             (report, settling.settled.speed_ratio) = settling.progress.step(self)?;
+            if settling.bonds_hold {
+                settling.settled.overloaded_bonds = report.contact.overloaded_bonds;
+            }
             self.follow_contacts(report.h)?;
             settling.settled.steps += 1;
             settling.settled.inertia_factors =
@@ -240,6 +267,7 @@ impl Simulation {
         let mut progress = Progress::new(self, damping);
         progress.moving_j = moving_j;
         let mut settling = Settling::new(self, progress, Vec::new());
+        settling.bonds_hold = false;
         let ramp = Ramp { start_s: self.time_s(), step_s: self.step_s(), steps: ramp_steps };
         let last = self.come_to_rest((settle, &mut settling), &ramp, watch);
         self.unscale_masses()?;
@@ -277,7 +305,8 @@ impl Simulation {
     }
 
     /// Which blocks have moved on the way, and where to.
-    fn not_settled(&self, Settling { settled, from, .. }: &Settling, stalled: Option<u64>) -> StepError {
+    fn not_settled(&self, settling: &Settling, stalled: Option<u64>) -> StepError {
+        let Settling { settled, from, bonds_hold, .. } = settling;
         let moved = self.farthest(from);
         let (gone_m, block) = moved[0];
         let towards = if gone_m > 0.0 { self.way(from, block) / gone_m } else { Vec3::zeros() };
@@ -289,6 +318,7 @@ impl Simulation {
             towards: towards.into(),
             others: moved[1..].iter().filter(|(gone, _)| *gone >= 0.5 * gone_m && *gone > 0.0).count(),
             stalled,
+            overloaded_bonds: if *bonds_hold { 0 } else { settled.overloaded_bonds },
         }
     }
 

@@ -11,13 +11,15 @@ pub(crate) struct SettlingStep {
     pub at_s: f64,
     /// Change of friction that does not matter, as a fraction of the largest friction on a block.
     pub friction_tolerance: f64,
+    /// Whether bonds hold whatever they carry.
+    pub bonds_hold: bool,
 }
 
 impl SettlingStep {
     /// A step at a time [s], with the present speed over the largest so far. That may be as little as loads bring in a single step, and errors of friction must not
     /// keep blocks moving: friction is found to a hundredth of the speed.
-    pub(crate) fn new(at_s: f64, speed_ratio: f64) -> Self {
-        Self { at_s, friction_tolerance: (FRICTION * speed_ratio).min(MOST_FRICTION) }
+    pub(crate) fn new(at_s: f64, speed_ratio: f64, bonds_hold: bool) -> Self {
+        Self { at_s, friction_tolerance: (FRICTION * speed_ratio).min(MOST_FRICTION), bonds_hold }
     }
 }
 

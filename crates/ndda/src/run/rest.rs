@@ -5,6 +5,8 @@ use std::time::{Duration, Instant};
 
 use ndda_solver::Settled;
 
+use crate::numbers::counted;
+
 /// How often it is said how far a scene is on its way to rest.
 const SAY: Duration = Duration::from_secs(2);
 
@@ -33,10 +35,15 @@ impl fmt::Display for Resting<'_> {
         if let Some(stage) = self.stage {
             write!(f, "stage `{stage}` ")?;
         }
-        let (Settled { steps, speed_ratio: left, inertia_factors }, until) = (self.settled, self.tolerance);
+        let (Settled { steps, speed_ratio: left, inertia_factors, overloaded_bonds }, until) =
+            (self.settled, self.tolerance);
         match left {
             _ if left <= until => {
                 write!(f, "settled in {steps} steps")?;
+                if overloaded_bonds > 0 {
+                    let bonds = counted(overloaded_bonds, "bond of a joint", "bonds of joints");
+                    write!(f, ", {bonds} overloaded at rest and let go")?;
+                }
                 return match inertia_factors {
                     Some([least, most]) => {
                         write!(f, ", inertia of blocks scaled by factors of {least:.1e} to {most:.1e}")

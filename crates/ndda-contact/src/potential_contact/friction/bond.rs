@@ -17,25 +17,25 @@
 
 use ndda_mesh::{BlockId, BlockSet, Mat3, TetId, TriangleId, Vec3};
 
+use crate::friction::bond_overload::{damage, overload};
 use crate::friction::bonds_of_facet::{self, Key, key};
-use crate::friction::fracture::Fracture;
-use crate::friction::law::{FacetSlip, FrictionLaw, facet_basis};
+use crate::friction::law::{FrictionLaw, facet_basis};
 use crate::friction::law_table::FrictionLawTable;
-use crate::friction::stretch::{Stretch, frame_of};
+use crate::friction::stretch::Stretch;
 use crate::integration::integrals::Integrals;
 use crate::model::{Bond, ContactHistory, ContactInput, ContactOutput, FacetContact, FacetMemory};
 use crate::pair_stiffness::PairStiffness;
 
 /// Breaks overloaded bonds, and hands their shear to the friction law of their facet; forgets the bonds of a facet once all of them are broken. Gives the largest
-/// overload of those that break.
+/// overload of those that break. Where bonds are to hold it breaks none, and counts those that would have broken or slipped.
 pub(crate) fn break_overloaded(
     joints: &FrictionLawTable,
     integrals: &Integrals,
     penalty_of_facet: &[f64],
     input: &ContactInput,
     (history, scratch): (&mut ContactHistory, &mut Vec<f64>),
-) -> f64 {
-    let mut largest = 0.0f64;
+) -> (f64, usize) {
+    let (mut largest, mut held) = (0.0f64, 0);
     let (blocks, touching) = (input.blocks, integrals.touching());
     let mut bonds = std::mem::take(&mut history.bonds);
     let mut opened = false;
@@ -44,9 +44,16 @@ pub(crate) fn break_overloaded(
             continue;
         }
         let law = law(joints, blocks, &bonds[place]);
+        let before = bonds[place];
         if let Some(fracture) = law.and_then(|law| law.fracture()) {
             let bond = &mut bonds[place];
-            largest = largest.max(damage(bond, fracture, input));
+            let overload = damage(bond, fracture, input);
+            if input.bonds_hold {
+                held += usize::from(*bond != before);
+                *bond = before;
+                continue;
+            }
+            largest = largest.max(overload);
             opened |= bond.damage >= 1.0;
             continue;
         }
@@ -62,7 +69,13 @@ pub(crate) fn break_overloaded(
             penalty_of_facet[t] * bonds_of_facet::borne(&bonds, place, facet, &weights)
         });
         let bond = &mut bonds[place];
-        let Some(overload) = overload(bond, law, (pressed_n, input), scratch) else { continue };
+        let overload = overload(bond, law, (pressed_n, input), scratch);
+        if input.bonds_hold {
+            held += usize::from(overload.is_some() || *bond != before);
+            *bond = before;
+            continue;
+        }
+        let Some(overload) = overload else { continue };
         largest = largest.max(overload);
         let slip_m = bond.slip_m;
         let stretch = Stretch::of(input, bond);
@@ -77,79 +90,7 @@ pub(crate) fn break_overloaded(
         bonds_of_facet::forget_opened(&mut bonds, blocks, joints.memory);
     }
     history.bonds = bonds;
-    largest
-}
-
-/// Overload of a bond that breaks, over its strength without normal stress; none where it holds. A bond whose law lets it slip does so first.
-fn overload(
-    bond: &mut Bond,
-    law: Option<&dyn FrictionLaw>,
-    (pressed_n, input): (f64, &ContactInput),
-    scratch: &mut Vec<f64>,
-) -> Option<f64> {
-    let Some(law) = law else { return Some(0.0) };
-    let mut stretch = Stretch::of(input, bond);
-    let tension_pa = match law.tension_after_slip_pa(bond.slip_m) {
-        Some(strength_pa) => {
-            open(bond, &mut stretch, (law, strength_pa), input);
-            let left_pa = slip(bond, &mut stretch, law, (pressed_n, input), scratch);
-            left_pa.inspect(|&left_pa| open(bond, &mut stretch, (law, left_pa), input))
-        }
-        None => Some(law.tension_pa()),
-    };
-    let Some(tension_pa) = tension_pa else { return Some(0.0) };
-    let overload = stretch.overload(law, (pressed_n, tension_pa, bond.slip_m), scratch);
-    (overload > 0.0).then_some(overload)
-}
-
-/// Damages a bond by how far it is stretched. Gives its overload where it breaks at once.
-fn damage(bond: &mut Bond, fracture: &Fracture, input: &ContactInput) -> f64 {
-    let (opening_m, slip_m) = Stretch::of(input, bond).beyond_rounding_m();
-    let reached = fracture.damage(opening_m, slip_m);
-    let at_once = bond.damage == 0.0 && reached >= 1.0;
-    bond.damage = bond.damage.max(reached);
-    if at_once { fracture.load(opening_m, slip_m) - 1.0 } else { 0.0 }
-}
-
-/// Lets a bond open as far as its tensile strength [Pa] is exceeded, where its law lets it.
-fn open(
-    bond: &mut Bond,
-    stretch: &mut Stretch,
-    (law, strength_pa): (&dyn FrictionLaw, f64),
-    input: &ContactInput,
-) {
-    let elastic_m = strength_pa / law.bond_stiffness_pa_m();
-    let beyond_m = stretch.opening_m - elastic_m;
-    if beyond_m > 0.0 && bond.opened_m + beyond_m <= law.opens_m() {
-        bond.opened_m += beyond_m;
-        stretch.opening_m = elastic_m;
-        bond.lambda = frame_of(bond.tet, input).lambda_at(&stretch.anchor());
-    }
-}
-
-/// Lets a bond slip as far as its shear strength is exceeded. Gives its tensile strength [Pa]; none where slip has left none, or has gone as far as what the bond holds is wide.
-fn slip(
-    bond: &mut Bond,
-    stretch: &mut Stretch,
-    law: &dyn FrictionLaw,
-    (pressed_n, input): (f64, &ContactInput),
-    state: &mut Vec<f64>,
-) -> Option<f64> {
-    let trial_n = stretch.shear_n(law).norm();
-    let area_m2 = 2.0 * stretch.half_area;
-    let normal_n = pressed_n - stretch.tension_n(law);
-    let load = FacetSlip { normal_n, area_m2, mean_area_m2: area_m2, ..FacetSlip::default() };
-    let mut memory = stretch.memory((law, bond.slip_m), state);
-    memory.shear_n = [trial_n, 0.0];
-    law.advance(&load, &mut memory);
-    let (shear_n, slip_m) = (memory.shear_n[0], memory.state[0]);
-    if shear_n < trial_n {
-        stretch.offset_m *= shear_n / trial_n;
-        bond.lambda = frame_of(bond.tet, input).lambda_at(&stretch.anchor());
-        bond.slip_m = slip_m;
-    }
-    let left = law.tension_after_slip_pa(bond.slip_m).filter(|left_pa| *left_pa > 0.0);
-    left.filter(|_| bond.slip_m.powi(2) < area_m2)
+    (largest, held)
 }
 
 /// Makes the shear of a bond that breaks the friction that its facet remembers; the law then limits it.

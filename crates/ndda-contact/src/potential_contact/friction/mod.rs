@@ -3,6 +3,7 @@
 pub(crate) mod barton_bandis;
 pub(crate) mod bond;
 pub(crate) mod bond_formation;
+pub(crate) mod bond_overload;
 pub(crate) mod bonds_of_facet;
 pub(crate) mod coulomb;
 pub(crate) mod dilating;

@@ -19,6 +19,8 @@ use crate::room::make_room;
 
 /// Faces whose normals are opposite but for so much lie on each other: the sine of about 8°.
 const TILT: f64 = 0.14;
+/// Part of the force between two convex blocks that other faces than one may have without the friction of all acting on that one.
+const BESIDE: f64 = 0.01;
 /// No run.
 const NONE: u32 = u32::MAX;
 
@@ -28,11 +30,14 @@ struct Run {
     places: Range<u32>,
     owner: BlockId,
     target: BlockId,
-    /// Direction of its normal force, zero where it has no friction, and ∫ φ dA.
+    /// Its normal force on its owner [N]; the direction of that, zero where it has no friction, and ∫ φ dA.
+    force_n: Vec3,
     direction: Vec3,
     pressure: f64,
     /// The run that lies on it.
     opposite: u32,
+    /// Factor on the normal force in Coulomb's law.
+    weight: f64,
 }
 
 impl Run {
@@ -52,6 +57,8 @@ pub(super) struct Opposite {
     by_pair: Vec<PairRun>,
     /// For each block, the place in `by_pair` for the next run whose pair has it as the lower block.
     starts: Vec<u32>,
+    /// Runs whose weight is not one, with it.
+    weights: Vec<(u32, f64)>,
 }
 
 impl Opposite {
@@ -65,6 +72,7 @@ impl Opposite {
     ) {
         self.find_runs(scene, forces, by_face);
         self.find_opposite(scene, by_face);
+        self.weigh(|block| faces.is_convex(block));
         order.clear();
         make_room(order, by_face.len());
         patches.clear();
@@ -86,18 +94,31 @@ impl Opposite {
             let (_, target, first) = places[0];
             let places = start..start + places.len() as u32;
             start = places.end;
-            let (owner, direction, pressure) = (scene.owner(first), Vec3::zeros(), 0.0);
-            self.runs.push(Run { places, owner, target, direction, pressure, opposite: NONE });
+            let (owner, zero) = (scene.owner(first), Vec3::zeros());
+            let (force_n, direction, pressure) = (zero, zero, 0.0);
+            self.runs.push(Run {
+                places,
+                owner,
+                target,
+                force_n,
+                direction,
+                pressure,
+                opposite: NONE,
+                weight: 1.0,
+            });
         }
         let press = |run: &mut Run| {
             let places = run.of(by_face);
             let pressure = |t: u32| scene.sums(t).pressure.max(0.0);
             let total: f64 = places.iter().map(|&(_, _, t)| pressure(t)).sum();
             run.pressure = total;
-            if total > 0.0 && scene.law(places).is_some() {
+            if total > 0.0 {
                 let push = |&(_, _, t): &Place| pressure(t) / total * forces[t as usize].push;
-                let direction: Vec3 = places.iter().map(push).sum();
-                run.direction = direction.try_normalize(0.0).unwrap_or_default();
+                let push_pa: Vec3 = places.iter().map(push).sum();
+                run.force_n = total * push_pa;
+                if scene.law(places).is_some() {
+                    run.direction = push_pa.try_normalize(0.0).unwrap_or_default();
+                }
             }
         };
         if self.runs.len() > GRAIN_PATCHES {
@@ -109,7 +130,7 @@ impl Opposite {
 
     /// Lists runs by the lower block of their pair, those of a block in the order of runs.
     fn list_by_lower_block(&mut self, blocks: usize) {
-        let Self { runs, by_pair, starts } = self;
+        let Self { runs, by_pair, starts, .. } = self;
         starts.clear();
         starts.resize(blocks + 1, 0);
         runs.iter().for_each(|run| starts[run.owner.min(run.target).index() + 1] += 1);
@@ -168,6 +189,48 @@ impl Opposite {
     }
 }
 
+impl Opposite {
+    /// Two convex blocks touch in one region, whose normal is the direction of the force between them: where an edge or a corner is in a face, the faces beside it slip
+    /// only as deep as they are in it, and the face that is pressed along that normal bears the friction of all.
+    fn weigh(&mut self, is_convex: impl Fn(BlockId) -> bool) {
+        let Self { runs, by_pair, weights, .. } = self;
+        weights.clear();
+        for pair in by_pair.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
+            let (lower, higher, ..) = pair[0];
+            if pair.len() == 1 || !is_convex(lower) || !is_convex(higher) {
+                continue;
+            }
+            let on_lower = |run: u32| {
+                let Run { owner, force_n, .. } = &runs[run as usize];
+                if *owner == lower { *force_n } else { -force_n }
+            };
+            let joined = |&(_, _, run, opposite): &PairRun| {
+                on_lower(run) + if opposite == NONE { Vec3::zeros() } else { on_lower(opposite) }
+            };
+            let patches = || pair.iter().filter(|(_, _, run, opposite)| opposite >= run);
+            let whole: Vec3 = pair.iter().map(|(_, _, run, _)| on_lower(*run)).sum();
+            let whole_n = whole.norm();
+            let is_normal = |patch: &&PairRun| {
+                let (force_n, has_law) = (joined(patch), runs[patch.2 as usize].direction != Vec3::zeros());
+                has_law
+                    && force_n.dot(&whole) > 0.0
+                    && force_n.cross(&whole).norm() < TILT * force_n.norm() * whole_n
+            };
+            let size_n = |patch: &PairRun| joined(patch).norm();
+            let chosen = patches().filter(is_normal).max_by(|a, b| size_n(a).total_cmp(&size_n(b)));
+            let Some(&(_, _, chosen, _)) = chosen else { continue };
+            let own_n = size_n(pair.iter().find(|(_, _, run, _)| *run == chosen).expect("it is one of them"));
+            let others_n: f64 = patches().filter(|patch| patch.2 != chosen).map(size_n).sum();
+            if others_n > BESIDE * whole_n {
+                for &(_, _, run, _) in patches() {
+                    weights.push((run, if run == chosen { whole_n / own_n } else { 0.0 }));
+                }
+            }
+        }
+        weights.iter().for_each(|(run, weight)| runs[*run as usize].weight = *weight);
+    }
+}
+
 /// Patches that are put one after the other.
 struct Joined<'a> {
     scene: &'a PatchScene<'a>,
@@ -186,7 +249,7 @@ impl Joined<'_> {
         let start = self.order.len();
         let Some(divided) = self.divided(runs(), (face, target)) else {
             runs().for_each(|run| self.order.extend_from_slice(run.of(self.by_face)));
-            return self.put(start, run, (number_of(face, None), 1.0));
+            return self.put(start, run, (number_of(face, None), run.weight));
         };
         for rest in runs().filter(|run| run.owner != divided.owner) {
             self.order.extend_from_slice(rest.of(self.by_face));
@@ -202,7 +265,7 @@ impl Joined<'_> {
             let (places, face) =
                 (start..start + places.len() as u32, number_of(face, Some(part(&places[0]))));
             start = places.end;
-            let weight = total / divided.pressure;
+            let weight = run.weight * total / divided.pressure;
             self.patches.push(PatchFacets { places, face, target, owner: run.owner, weight });
         }
     }
