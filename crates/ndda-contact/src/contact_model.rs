@@ -1,6 +1,6 @@
 //! The seam between solver and contact.
 
-use ndda_mesh::BlockId;
+use ndda_mesh::{BlockId, BlockSet, TriangleId};
 
 use crate::audit::ContactAudit;
 use crate::model::{ContactError, ContactHistory, ContactInput, ContactOutput, ContactReport};
@@ -47,6 +47,25 @@ pub trait ContactModel: ContactAudit + Send + Sync {
     /// Leaves blocks out of contact from now on, those that are `true`, as if they were not there; `false` where the model cannot.
     fn leave_out(&mut self, _absent: &[bool]) -> bool {
         false
+    }
+
+    /// Whether a facet holds to a block that it touches when contact begins.
+    fn holds_together(&self, _blocks: &BlockSet, _facet: TriangleId, _target: BlockId) -> bool {
+        false
+    }
+
+    /// Takes over the history of another model, whose laws were others: laws that keep other numbers of a facet begin anew, what touches now and holds together
+    /// under these laws alone does so from now on, and what carries more than its strength breaks.
+    ///
+    /// # Errors
+    /// As [`add_forces`](Self::add_forces).
+    fn take_over(
+        &mut self,
+        _input: &ContactInput,
+        _before: &dyn ContactModel,
+        _history: &mut ContactHistory,
+    ) -> Result<(), ContactError> {
+        Ok(())
     }
 
     /// Whether forces on a block go to a few of its nodes wherever they press, because it moves by an affine map.

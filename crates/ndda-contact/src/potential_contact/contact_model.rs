@@ -1,6 +1,6 @@
 //! The contact potential as a contact model.
 
-use ndda_mesh::{BlockId, Vec3};
+use ndda_mesh::{BlockId, BlockSet, TriangleId, Vec3};
 use ndda_ranks::ExactSum;
 
 use crate::assembly::join_if::join_if;
@@ -201,6 +201,25 @@ impl ContactModel for PotentialContact {
     fn leave_out(&mut self, absent: &[bool]) -> bool {
         self.candidates.leave_out(absent);
         true
+    }
+
+    fn holds_together(&self, blocks: &BlockSet, facet: TriangleId, target: BlockId) -> bool {
+        let law = self.joints.as_ref().and_then(|joints| joints.law(blocks, facet, target));
+        law.is_some_and(|law| law.holds_together())
+    }
+
+    fn take_over(
+        &mut self,
+        input: &ContactInput,
+        before: &dyn ContactModel,
+        history: &mut ContactHistory,
+    ) -> Result<(), ContactError> {
+        history.begin_laws(self.joints.as_ref().map_or(0, FrictionLawTable::state_len));
+        if history.begun {
+            self.bond_more(input, before, history)?;
+            self.break_quietly(input, history)?;
+        }
+        Ok(())
     }
 
     fn uses_host_forces(&self, block: BlockId) -> bool {

@@ -13,6 +13,7 @@ mod plan;
 pub mod potential;
 pub mod reference;
 pub mod restitution;
+mod taking_over;
 
 pub use {
     batch::{BatchFacet, BatchFriction, BatchLaw},

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use ndda_contact::ContactInput;
 use ndda_mesh::{BlockId, Vec3};
 
 use crate::bodies::kind::BodyKind;
@@ -101,11 +102,13 @@ impl Simulation {
         self.restore(snapshot.clone())?;
         self.change_places(before, (&released, &added), start);
         self.install_bolts(before);
+        self.take_over_contact(before)?;
         let rest = self.contact_now()?;
-        // Laws that keep other numbers of each facet have refused the history by now; what the evaluation left behind goes.
+        // What the evaluation left behind goes.
         self.restore(snapshot)?;
         self.change_places(before, (&released, &added), start);
         self.install_bolts(before);
+        self.take_over_contact(before)?;
         self.stop_held_nodes(before);
         if start.over_s > 0.0 {
             let pairs = before.contact_between(&contact, &released);
@@ -169,6 +172,19 @@ impl Simulation {
         }
         let (blocks, absent) = (&self.problem.blocks, self.stage.as_ref().map_or(&[][..], |s| &s.absent));
         self.state.contact.forget_bonds(blocks, |block| absent.get(block.index()) == Some(&true));
+    }
+
+    /// Takes over what contact remembers, under the laws of this stage.
+    fn take_over_contact(&mut self, before: &Self) -> Result<(), StepError> {
+        let time_s = self.time_s();
+        let (Some(model), Some(old)) = (&mut self.contact, &before.contact) else { return Ok(()) };
+        let State { position, velocity, contact, .. } = &mut self.state;
+        let input = ContactInput {
+            affine: &self.problem.affine,
+            ..ContactInput::new(&self.problem.blocks, position, velocity, self.part_s)
+        };
+        let taken = model.take_over(&input, &**old, contact);
+        taken.map_err(|source| StepError::of_contact(time_s, source))
     }
 
     /// Takes over what stages keep; which blocks are absent is known from the start.

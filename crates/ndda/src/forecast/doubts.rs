@@ -6,6 +6,7 @@ use ndda_io::scene::{Contact, Friction, Material, Potential, Scene};
 use ndda_solver::BodyKind;
 use ndda_solver::Simulation;
 
+use super::ground_stress;
 use super::idle;
 use super::points;
 use super::step::Advice;
@@ -39,6 +40,7 @@ pub fn doubts(
     doubts.extend(BoltReports::new(simulation).doubts(|name| build::bolts::entry(scene, name)));
     doubts.extend(idle::findings(scene, simulation.blocks(), folder));
     doubts.extend(points::findings(scene, simulation.blocks()));
+    doubts.extend(ground_stress::finding(scene, simulation));
     let falls = scene.gravity_m_s2 != [0.0; 3];
     doubts.extend(ramp(scene).filter(|_| falls));
     let Some(Contact::Potential { penalty_pa, potential, .. }) = &scene.contact else { return doubts };

@@ -3,8 +3,6 @@
 use ndda_solver::{Sample, Simulation};
 use serde::{Deserialize, Serialize};
 
-use super::passage::Moment;
-
 /// Energy that may come from nowhere or vanish, over the largest kinetic energy: speeds are as its root, and may be off by 1 %.
 const MOST_ENERGY: f64 = 0.02;
 /// Depth of a contact over the width of the boulder: it leaves the boulder up to π d/2 from where it should be, which is less than ground is known to.
@@ -42,9 +40,8 @@ impl Accuracy {
     }
 
     /// Turns energies into parts of the largest kinetic energy.
-    pub(super) fn close(&mut self, path: &[Moment]) {
+    pub(super) fn close(&mut self, largest_j: f64) {
         self.energy = self.energy.max(self.balance_j.abs());
-        let largest_j = path.iter().map(Moment::energy_j).fold(0.0, f64::max);
         if largest_j > 0.0 {
             self.energy /= largest_j;
             self.friction /= largest_j;

@@ -62,6 +62,8 @@ pub struct Fall {
     pub end: End,
     /// Its path, from the release to the end.
     pub path: Vec<Moment>,
+    /// Largest speed [m/s], kinetic energy [J] and height above the ground [m] of all steps.
+    pub largest: Largest,
     /// Lines that it crossed, by their numbers, in the order of time.
     pub passages: Vec<(usize, Moment)>,
     /// Cells of the map of reach that it was in, ascending.
@@ -70,6 +72,25 @@ pub struct Fall {
     pub accuracy: Accuracy,
     /// Steps that it took.
     pub steps: u64,
+}
+
+/// The largest of all steps of a fall.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Largest {
+    /// Speed of the mass centre [m/s].
+    pub speed_m_s: f64,
+    /// Kinetic energy [J].
+    pub energy_j: f64,
+    /// Height of the mass centre above the ground [m].
+    pub height_m: f64,
+}
+
+impl Largest {
+    fn see(&mut self, now: &Moment) {
+        self.speed_m_s = self.speed_m_s.max(now.speed_m_s());
+        self.energy_j = self.energy_j.max(now.energy_j());
+        self.height_m = self.height_m.max(now.height_m);
+    }
 }
 
 /// What all boulders have in common.
@@ -140,6 +161,7 @@ impl Case<'_> {
             diameter_m: boulder.diameter_m(),
             end: End::StillMoving,
             path: Vec::new(),
+            largest: Largest::default(),
             passages: Vec::new(),
             cells: Vec::new(),
             accuracy: Accuracy::default(),
@@ -236,6 +258,7 @@ impl Watch<'_> {
     fn within(&mut self, simulation: &mut Simulation, span: &Span, since_s: f64) -> Option<End> {
         if self.fall.path.is_empty() {
             self.last = self.moment(simulation, 0.0);
+            self.fall.largest.see(&self.last);
             self.keep();
         }
         let mut touches = false;
@@ -271,6 +294,7 @@ impl Watch<'_> {
     fn see(&mut self, simulation: &Simulation, time_s: f64) -> Option<End> {
         let now = self.moment(simulation, time_s);
         let before = std::mem::replace(&mut self.last, now);
+        self.fall.largest.see(&now);
         for (k, line) in self.case.rockfall.lines.iter().enumerate() {
             if let Some(part) = crossing(&line.points_m, before.map_m(), now.map_m()) {
                 self.fall.passages.push((k, before.towards(&now, part)));
@@ -358,7 +382,7 @@ impl Watch<'_> {
         self.fall.path.retain(|moment| moment.height_m.is_finite());
         self.fall.cells = self.cells.into_iter().collect();
         self.fall.end = end;
-        self.fall.accuracy.close(&self.fall.path);
+        self.fall.accuracy.close(self.fall.largest.energy_j);
         self.fall
     }
 }

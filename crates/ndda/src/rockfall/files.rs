@@ -47,7 +47,6 @@ fn boulders(model: &Model, falls: &[Fall]) -> String {
         };
         let place = |moment: Option<&Moment>| moment.map_or([f64::NAN; 3], |moment| moment.at_m);
         let ([sx, sy, sz], [ex, ey, ez]) = (place(fall.path.first()), place(fall.path.last()));
-        let most = |of: &dyn Fn(&Moment) -> f64| fall.path.iter().map(of).fold(0.0, f64::max);
         let time_s = fall.path.last().map_or(0.0, |moment| moment.time_s);
         let release = &model.rockfall.releases[fall.release].name;
         let _ = writeln!(
@@ -57,9 +56,9 @@ fn boulders(model: &Model, falls: &[Fall]) -> String {
             fall.mass_kg,
             fall.diameter_m,
             map::runout_m(fall),
-            most(&Moment::speed_m_s),
-            most(&Moment::energy_j),
-            most(&|moment| moment.height_m),
+            fall.largest.speed_m_s,
+            fall.largest.energy_j,
+            fall.largest.height_m,
             fall.steps,
             fall.accuracy.energy,
             fall.accuracy.friction,

@@ -89,7 +89,7 @@ pub(super) fn start(
     let turned = turned(boulder, &draw.turn());
     let center = flat + Vec3::z() * (clearance_m(terrain, &flat, &turned) + height_m);
     Ok(Motion {
-        nodes: turned.iter().map(|x| x + center).collect(),
+        arms: turned,
         center,
         velocity_m_s: speed * (dip.cos() * forward - dip.sin() * Vec3::z()),
         // Forward rotation is about z × forward: the top moves ahead.

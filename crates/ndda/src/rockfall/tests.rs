@@ -43,9 +43,9 @@ fn cube(angle_deg: f64, at_x: f64, lift_m: f64, [along, into]: [f64; 2]) -> (Bou
     let turn = Mat3::from_columns(&[down, Vec3::y(), normal]);
     let foot = Vec3::new(at_x, 20.3, -angle_deg.to_radians().tan() * at_x);
     let center = foot + (0.5 + lift_m) * normal;
-    let nodes = boulder.mesh.nodes.iter().map(|x| center + turn * x).collect();
+    let arms = boulder.mesh.nodes.iter().map(|x| turn * x).collect();
     let velocity_m_s = along * down - into * normal;
-    (boulder, Motion { nodes, center, velocity_m_s, spin_rad_s: Vec3::zeros() })
+    (boulder, Motion { arms, center, velocity_m_s, spin_rad_s: Vec3::zeros() })
 }
 
 /// Steps for a time, with new windows where they are needed; the motion then, and the energy that came from nowhere [J].

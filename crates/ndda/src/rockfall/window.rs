@@ -50,8 +50,8 @@ pub(super) struct Laws {
 /// Where a boulder is and how it moves.
 #[derive(Clone, Debug)]
 pub(super) struct Motion {
-    /// Nodes of its mesh, in the coordinates of the scene [m].
-    pub nodes: Vec<Vec3>,
+    /// Nodes of its mesh, from its mass centre [m].
+    pub arms: Vec<Vec3>,
     /// Mass centre [m].
     pub center: Vec3,
     /// Velocity of the mass centre [m/s].
@@ -191,12 +191,16 @@ pub(super) fn simulation(
     (tets, motion): (&[[u32; 4]], &Motion),
     laws: &Laws,
 ) -> Result<Simulation, String> {
-    let boulder = BlockMesh { nodes: motion.nodes.clone(), tets: tets.to_vec(), ..BlockMesh::default() };
-    let blocks = BlockSet::new(vec![
-        ("boulder".to_string(), boulder),
-        ("ground".to_string(), ground(terrain, cells, laws.friction_deg.len())),
-    ])
-    .map_err(|error| error.to_string())?;
+    // Map coordinates are so large that rounding them would bend the faces of the boulder.
+    let origin_m = motion.center.map(f64::round);
+    let center = motion.center - origin_m;
+    let nodes = motion.arms.iter().map(|arm| center + arm).collect();
+    let boulder = BlockMesh { nodes, tets: tets.to_vec(), ..BlockMesh::default() };
+    let mut ground = ground(terrain, cells, laws.friction_deg.len());
+    ground.nodes.iter_mut().for_each(|x| *x -= origin_m);
+    let mut blocks = BlockSet::new(vec![("boulder".to_string(), boulder), ("ground".to_string(), ground)])
+        .map_err(|error| error.to_string())?;
+    blocks.origin_m += origin_m;
     let contact = contact(laws);
     // Rigid and fixed blocks have no moduli.
     let rock = LinearElastic::new(1e9, 0.25, laws.density_kg_m3).map_err(|error| error.to_string())?;
@@ -258,7 +262,7 @@ pub(super) fn motion(simulation: &Simulation) -> Motion {
     let (position, velocity) = (&state.position[nodes.clone()], &state.velocity[nodes]);
     let motion = simulation.shape(BOULDER).operator.rigid_motion(position, velocity);
     Motion {
-        nodes: position.iter().map(|x| x + blocks.origin_m).collect(),
+        arms: position.iter().map(|x| x - motion.center).collect(),
         center: motion.center + blocks.origin_m,
         velocity_m_s: motion.velocity_m_s,
         spin_rad_s: motion.spin_rad_s,

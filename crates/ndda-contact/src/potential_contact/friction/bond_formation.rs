@@ -10,9 +10,10 @@ use crate::friction::stretch;
 use crate::integration::clip::{Form, Outline, Polygon};
 use crate::model::{Bond, ContactInput};
 
-/// A facet touches a block when it is no further outside than this part of the size of the target's tetrahedron, and a
-/// bond has at least this part of the facet's area.
-const TOUCHING: f64 = 1e-6;
+/// A facet touches a block when it is no further outside than this part of the size of the target's tetrahedron.
+const TOUCHING: f64 = 1e-5;
+/// Least area of a bond over that of the facet.
+const LEAST_SHARE: f64 = 1e-6;
 
 /// Forms the bonds of a scene whose contact is evaluated for the first time.
 pub(crate) fn form(
@@ -94,7 +95,7 @@ impl<'a> Patch<'a> {
                 }
             }
         }
-        if share <= TOUCHING {
+        if share <= LEAST_SHARE {
             return None;
         }
         let center = moment.map(|m| m / share);

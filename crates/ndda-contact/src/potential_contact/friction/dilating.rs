@@ -46,14 +46,14 @@ impl Dilating {
         Self { law, dilation }
     }
 
-    /// Opening after a step that took the plastic slip from `before` to `after` [m].
+    /// Opening after a step that took the plastic slip from `before` to `after` [m]: what a joint has opened by remains where its angle changes.
     fn opening_m(&self, opening_m: f64, [before, after]: [[f64; 2]; 2], deg: f64) -> f64 {
-        match self.dilation {
-            Dilation::Angle { psi_deg, to_slip_m } => {
-                psi_deg.to_radians().tan() * length(after).min(to_slip_m)
-            }
-            Dilation::Own => (opening_m + deg.to_radians().tan() * (length(after) - length(before))).max(0.0),
-        }
+        let (deg, to_slip_m) = match self.dilation {
+            Dilation::Angle { psi_deg, to_slip_m } => (psi_deg, to_slip_m),
+            Dilation::Own => (deg, f64::INFINITY),
+        };
+        let slip_m = length(after).min(to_slip_m) - length(before).min(to_slip_m);
+        (opening_m + deg.to_radians().tan() * slip_m).max(0.0)
     }
 }
 

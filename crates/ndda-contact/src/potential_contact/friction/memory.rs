@@ -19,6 +19,14 @@ impl ContactHistory {
         Ok(())
     }
 
+    /// Lets laws begin anew that keep another number of values per facet.
+    pub(crate) fn begin_laws(&mut self, len: usize) {
+        if self.law_state_len as usize != len {
+            self.law_state_len = len as u32;
+            self.law_state = vec![0.0; len * self.facets.len()];
+        }
+    }
+
     /// The law's own numbers of a facet.
     pub(crate) fn state_of(&self, place: usize) -> &[f64] {
         let len = self.law_state_len as usize;

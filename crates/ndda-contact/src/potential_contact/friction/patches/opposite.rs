@@ -19,7 +19,8 @@ use crate::room::make_room;
 
 /// Faces whose normals are opposite but for so much lie on each other: the sine of about 8°.
 const TILT: f64 = 0.14;
-/// Part of the force between two convex blocks that other faces than one may have without the friction of all acting on that one.
+/// Force on other faces than one, over the force on that one, up to which each face of two convex blocks has its own friction, as faces have that lie on each other and
+/// are a little deep in each other with their edges; from twice that on the one has the friction of all.
 const BESIDE: f64 = 0.01;
 /// No run.
 const NONE: u32 = u32::MAX;
@@ -72,7 +73,7 @@ impl Opposite {
     ) {
         self.find_runs(scene, forces, by_face);
         self.find_opposite(scene, by_face);
-        self.weigh(|block| faces.is_convex(block));
+        self.weigh(scene, by_face, |block| faces.is_convex(block));
         order.clear();
         make_room(order, by_face.len());
         patches.clear();
@@ -191,44 +192,57 @@ impl Opposite {
 
 impl Opposite {
     /// Two convex blocks touch in one region, whose normal is the direction of the force between them: where an edge or a corner is in a face, the faces beside it slip
-    /// only as deep as they are in it, and the face that is pressed along that normal bears the friction of all.
-    fn weigh(&mut self, is_convex: impl Fn(BlockId) -> bool) {
+    /// only as deep as they are in it, and the face that is pressed along that normal bears the friction of all. Blocks that deform keep the friction of each face, and so
+    /// do faces of several laws.
+    fn weigh(&mut self, scene: &PatchScene, by_face: &[Place], is_convex: impl Fn(BlockId) -> bool) {
         let Self { runs, by_pair, weights, .. } = self;
         weights.clear();
-        for pair in by_pair.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
-            let (lower, higher, ..) = pair[0];
-            if pair.len() == 1 || !is_convex(lower) || !is_convex(higher) {
+        let may = |block: BlockId| is_convex(block) && !scene.input.bodies[block.index()].deforms;
+        for pair in by_pair.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).filter(|pair| pair.len() > 1) {
+            let law = |(_, _, run, _): &PairRun| scene.law(runs[*run as usize].of(by_face));
+            let first = law(&pair[0]);
+            let is_first = |run| match (law(run), first) {
+                (Some(a), Some(b)) => std::ptr::addr_eq(a, b),
+                _ => false,
+            };
+            if !may(pair[0].0) || !may(pair[0].1) || !pair.iter().all(is_first) {
                 continue;
             }
-            let on_lower = |run: u32| {
-                let Run { owner, force_n, .. } = &runs[run as usize];
-                if *owner == lower { *force_n } else { -force_n }
-            };
-            let joined = |&(_, _, run, opposite): &PairRun| {
-                on_lower(run) + if opposite == NONE { Vec3::zeros() } else { on_lower(opposite) }
-            };
-            let patches = || pair.iter().filter(|(_, _, run, opposite)| opposite >= run);
-            let whole: Vec3 = pair.iter().map(|(_, _, run, _)| on_lower(*run)).sum();
-            let whole_n = whole.norm();
-            let is_normal = |patch: &&PairRun| {
-                let (force_n, has_law) = (joined(patch), runs[patch.2 as usize].direction != Vec3::zeros());
-                has_law
-                    && force_n.dot(&whole) > 0.0
-                    && force_n.cross(&whole).norm() < TILT * force_n.norm() * whole_n
-            };
-            let size_n = |patch: &PairRun| joined(patch).norm();
-            let chosen = patches().filter(is_normal).max_by(|a, b| size_n(a).total_cmp(&size_n(b)));
-            let Some(&(_, _, chosen, _)) = chosen else { continue };
-            let own_n = size_n(pair.iter().find(|(_, _, run, _)| *run == chosen).expect("it is one of them"));
-            let others_n: f64 = patches().filter(|patch| patch.2 != chosen).map(size_n).sum();
-            if others_n > BESIDE * whole_n {
-                for &(_, _, run, _) in patches() {
-                    weights.push((run, if run == chosen { whole_n / own_n } else { 0.0 }));
-                }
+            if let Some((bearer, own, others)) = bearer(runs, pair) {
+                let heads = pair.iter().filter(|(_, _, run, opposite)| opposite >= run);
+                weights.extend(heads.map(|&(_, _, run, _)| (run, if run == bearer { own } else { others })));
             }
         }
         weights.iter().for_each(|(run, weight)| runs[*run as usize].weight = *weight);
     }
+}
+
+/// Of the patches of two blocks, the first run of the one that is pressed along the force between them, its weight and that of the others; none where no patch is, or
+/// others hardly count.
+fn bearer(runs: &[Run], pair: &[PairRun]) -> Option<(u32, f64, f64)> {
+    let on_lower_n = |run: u32| {
+        let Run { owner, force_n, .. } = &runs[run as usize];
+        if *owner == pair[0].0 { *force_n } else { -force_n }
+    };
+    let joined_n = |&(_, _, run, opposite): &PairRun| {
+        on_lower_n(run) + if opposite == NONE { Vec3::zeros() } else { on_lower_n(opposite) }
+    };
+    let whole_n: Vec3 = pair.iter().map(|(_, _, run, _)| on_lower_n(*run)).sum();
+    let is_along = |force_n: &Vec3| {
+        force_n.dot(&whole_n) > 0.0 && force_n.cross(&whole_n).norm() < TILT * force_n.norm() * whole_n.norm()
+    };
+    let (mut best, mut all_n) = (None, 0.0);
+    for patch in pair.iter().filter(|(_, _, run, opposite)| opposite >= run) {
+        let force_n = joined_n(patch);
+        let size_n = force_n.norm();
+        all_n += size_n;
+        if is_along(&force_n) && best.is_none_or(|(_, most_n)| size_n > most_n) {
+            best = Some((patch.2, size_n));
+        }
+    }
+    let (run, own_n) = best?;
+    let part = ((all_n - own_n) / own_n / BESIDE - 1.0).min(1.0);
+    (part > 0.0).then(|| (run, 1.0 + part * (whole_n.norm() / own_n - 1.0), 1.0 - part))
 }
 
 /// Patches that are put one after the other.

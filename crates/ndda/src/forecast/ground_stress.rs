@@ -1,0 +1,46 @@
+//! Stress in the ground that is lost before anything is dug: joints begin at zero depth, and blocks give it to them while they come to rest.
+//!
+//! Under a stress σ a joint closes by σ L/(2 k_n), while a block of size s that loses the stress grows by σ s/E. Between a joint and the next, what is left of σ₀ is
+//! σ₀ (s/E)/(s/E + L/(2 k_n)).
+
+use ndda_io::scene::{Contact, Potential, Scene};
+use ndda_solver::{BodyKind, Simulation};
+
+/// Part of the stress that may be lost without a word.
+const LOST: f64 = 0.05;
+
+/// That much of the stress in the ground is lost, or that no block can have it.
+pub(super) fn finding(scene: &Scene, simulation: &Simulation) -> Option<String> {
+    scene.in_situ.as_ref()?;
+    let blocks = simulation.blocks();
+    let deforms = |kind: BodyKind| matches!(kind, BodyKind::Elastic | BodyKind::Affine);
+    let of_size = |block| {
+        let shape = simulation.shape(block);
+        let volume_m3 = shape.operator.mass_kg / shape.material.density_kg_m3();
+        deforms(shape.kind).then(|| volume_m3.cbrt())
+    };
+    let mut sizes_m: Vec<f64> = blocks.ids().filter_map(of_size).collect();
+    sizes_m.sort_unstable_by(f64::total_cmp);
+    let Some(&size_m) = sizes_m.get(sizes_m.len() / 2) else {
+        return Some("in_situ acts on nothing, since no block of the scene can deform: make blocks Elastic or Affine, or leave it out".into());
+    };
+    let Some(Contact::Potential { penalty_pa, potential, .. }) = &scene.contact else { return None };
+    let reference_m = match potential {
+        Potential::Smooth { reference_m } | Potential::Closure { reference_m, .. } => *reference_m,
+        Potential::Element | Potential::Volume { .. } => return None,
+    };
+    if blocks.len() < 2 {
+        return None;
+    }
+    let young_pa = scene.materials.iter().map(|material| material.young_pa).fold(0.0, f64::max);
+    let (joint, rock) = (reference_m / (2.0 * penalty_pa), size_m / young_pa);
+    let lost = joint / (joint + rock);
+    let enough_pa = (1.0 / LOST - 1.0) * reference_m / (2.0 * rock);
+    (lost > LOST).then(|| {
+        format!(
+            "about {:.0} % of the stress in the ground (in_situ) is lost as joints close, which begin at zero depth: give a penalty_pa of {enough_pa:.0e} to lose {:.0} %",
+            100.0 * lost,
+            100.0 * LOST
+        )
+    })
+}
