@@ -1,9 +1,10 @@
 //! Stress in the ground that is lost before anything is dug: joints begin at zero depth, and blocks give it to them while they come to rest.
 //!
 //! Under a stress σ a joint closes by σ L/(2 k_n), while a block of size s that loses the stress grows by σ s/E. Between a joint and the next, what is left of σ₀ is
-//! σ₀ (s/E)/(s/E + L/(2 k_n)).
+//! σ₀ (s/E)/(s/E + L/(2 k_n)). Of blocks of unlike sides the least counts, along which there are most joints.
 
 use ndda_io::scene::{Contact, Potential, Scene};
+use ndda_mesh::geometry::Aabb;
 use ndda_solver::{BodyKind, Simulation};
 
 /// Part of the stress that may be lost without a word.
@@ -15,9 +16,8 @@ pub(super) fn finding(scene: &Scene, simulation: &Simulation) -> Option<String> 
     let blocks = simulation.blocks();
     let deforms = |kind: BodyKind| matches!(kind, BodyKind::Elastic | BodyKind::Affine);
     let of_size = |block| {
-        let shape = simulation.shape(block);
-        let volume_m3 = shape.operator.mass_kg / shape.material.density_kg_m3();
-        deforms(shape.kind).then(|| volume_m3.cbrt())
+        let bounds = Aabb::around(&blocks.rest_position[blocks.nodes_of(block)]);
+        deforms(simulation.shape(block).kind).then(|| (bounds.max - bounds.min).min())
     };
     let mut sizes_m: Vec<f64> = blocks.ids().filter_map(of_size).collect();
     sizes_m.sort_unstable_by(f64::total_cmp);
