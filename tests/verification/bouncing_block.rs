@@ -31,18 +31,23 @@ pub fn restitution(simulation: &mut Simulation) -> Result<f64, StepError> {
     Ok(simulation.sample()?.momentum.z / (2500.0 * SPEED_M_S))
 }
 
-/// Speed after over speed before, and largest gain of the energy balance over the energy.
-fn bounce(integrator: &str, step_s: f64) -> (f64, f64) {
-    let mut simulation = ball(integrator, step_s);
-    simulation.sample().unwrap();
+/// Steps until blocks have touched, and touch no more.
+pub fn step_until_it_leaves(simulation: &mut Simulation) {
     let mut touched = false;
     loop {
         let report = simulation.step().unwrap();
         touched |= report.contact.contact_pairs > 0;
         if touched && report.contact.contact_pairs == 0 {
-            break;
+            return;
         }
     }
+}
+
+/// Speed after over speed before, and largest gain of the energy balance over the energy.
+fn bounce(integrator: &str, step_s: f64) -> (f64, f64) {
+    let mut simulation = ball(integrator, step_s);
+    simulation.sample().unwrap();
+    step_until_it_leaves(&mut simulation);
     (restitution(&mut simulation).unwrap(), simulation.invariants().energy_gain)
 }
 

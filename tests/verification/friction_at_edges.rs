@@ -1,5 +1,6 @@
 //! A rigid cube falls onto a face with an edge or a corner ahead, its mass centre above it: nothing slips, and friction takes no energy whatever its angle.
 
+use crate::bouncing_block::step_until_it_leaves;
 use crate::evidence::Answer::{AtMost, Within};
 use crate::evidence::row;
 use crate::simulation;
@@ -23,15 +24,7 @@ fn rebound(turns: &str, friction_deg: f64) -> [f64; 2] {
     let nodes = simulation.blocks().nodes_of(block);
     let heights = simulation.state().position[nodes.clone()].iter().map(|x| x.z);
     let impact_m_s = (2.0 * GRAVITY_M_S2 * heights.fold(f64::INFINITY, f64::min)).sqrt();
-    // Until it is on the way up again, and no longer touches.
-    let mut touched = false;
-    loop {
-        let report = simulation.step().unwrap();
-        touched |= report.contact.contact_pairs > 0;
-        if touched && report.contact.contact_pairs == 0 {
-            break;
-        }
-    }
+    step_until_it_leaves(&mut simulation);
     let velocity = simulation.shape(block).operator.center(&simulation.state().velocity[nodes]);
     // Gravity has slowed it down by as much as it had made it quicker below the first contact.
     [velocity.z / impact_m_s, velocity.x.hypot(velocity.y) / impact_m_s]

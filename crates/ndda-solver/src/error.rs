@@ -85,7 +85,7 @@ pub enum StepError {
         "the scene has not come to rest in {steps} steps ({}{}){}. Block `{block}` has moved {} \
          towards ({:.2}, {:.2}, {:.2}), and {} at least half as far: {}",
         speed_left(*speed_ratio), no_less(*stalled), let_go(*overloaded_bonds), metres(*gone_m), towards[0], towards[1], towards[2], other_blocks(*others),
-        cure_of_unrest(*stalled)
+        cure_of_unrest(*stalled, *overloaded_bonds)
     )]
     NotSettled {
         /// Steps done.
@@ -170,14 +170,17 @@ fn let_go(bonds: usize) -> String {
     match bonds {
         0 => String::new(),
         _ => format!(
-            ", but rested while its joints held whatever they carry, {bonds} of their bonds more than their strength"
+            ", although it rested as long as its joints held: {bonds} of their bonds carry more than their strength"
         ),
     }
 }
 
 /// What helps a scene to come to rest.
-fn cure_of_unrest(stalled: Option<u64>) -> &'static str {
+fn cure_of_unrest(stalled: Option<u64>, overloaded_bonds: usize) -> &'static str {
     match stalled {
+        _ if overloaded_bonds > 0 => {
+            "support them, give their joints more strength, or leave out settle if they are to slide or fall"
+        }
         None => {
             "hold them, leave out settle if they are to slide or fall, or raise settle.most_steps if they are only slow"
         }

@@ -42,7 +42,7 @@ impl fmt::Display for Resting<'_> {
                 write!(f, "settled in {steps} steps")?;
                 if overloaded_bonds > 0 {
                     let bonds = counted(overloaded_bonds, "bond of a joint", "bonds of joints");
-                    write!(f, ", {bonds} overloaded at rest and let go")?;
+                    write!(f, ", {bonds} carried more than their strength at rest and were let go")?;
                 }
                 return match inertia_factors {
                     Some([least, most]) => {
