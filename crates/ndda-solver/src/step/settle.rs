@@ -281,7 +281,7 @@ impl Simulation {
         let kept_j = self.keep_reactions_of_rest()?;
         let (new, books) = self.look()?;
         self.audit.ledger.blocks().rebase(&books);
-        // What bolts do by slip and yielding is counted where they do it.
+        // The work of slip and yielding of bolts is in the balance already.
         let bolts_j = new.bolt_work_j - old.bolt_work_j;
         self.audit.ledger.add_way_to_rest(&way, new.total_j() - old.total_j() - bolts_j - kept_j);
         self.audit.ledger.add_jump_of_momentum(&old, &new);

@@ -104,7 +104,7 @@ impl Simulation {
         self.install_bolts(before);
         self.take_over_contact(before)?;
         let rest = self.contact_now()?;
-        // What the evaluation left behind goes.
+        // Undoes what this evaluation of contact has changed.
         self.restore(snapshot)?;
         self.change_places(before, (&released, &added), start);
         self.install_bolts(before);

@@ -75,7 +75,7 @@ pub struct Fall {
 }
 
 /// The largest of all steps of a fall.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Largest {
     /// Speed of the mass centre [m/s].
     pub speed_m_s: f64,

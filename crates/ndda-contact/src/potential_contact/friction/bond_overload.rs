@@ -1,4 +1,4 @@
-//! What a bond does that carries more than its strength: it breaks, slips, opens or is damaged.
+//! A bond that carries more than its strength breaks, slips, opens or is damaged.
 
 use crate::friction::fracture::Fracture;
 use crate::friction::law::{FacetSlip, FrictionLaw};

@@ -11,6 +11,7 @@ use ndda_mesh::{BlockId, Vec3};
 use rayon::prelude::*;
 
 use crate::friction::facet::FacetForce;
+use crate::friction::law::FrictionLaw;
 use crate::friction::patches::parts::{FaceParts, number_of, was_divided};
 use crate::friction::patches::patch::PatchFacets;
 use crate::friction::patches::{GRAIN_PATCHES, PatchScene, Place};
@@ -162,11 +163,9 @@ impl Opposite {
                 let law = scene.law(run.of(by_face));
                 let is_free = |&(_, _, other, taken): &PairRun| {
                     let other = &all[other as usize];
-                    let same_law = || match (law, scene.law(other.of(by_face))) {
-                        (Some(a), Some(b)) => std::ptr::addr_eq(a, b),
-                        _ => false,
-                    };
-                    taken == NONE && is_opposite(&run.direction, &other.direction) && same_law()
+                    taken == NONE
+                        && is_opposite(&run.direction, &other.direction)
+                        && is_same_law(law, scene.law(other.of(by_face)))
                 };
                 let along = |other: u32| run.direction.dot(&all[other as usize].direction);
                 let free = others.iter_mut().filter(|other| is_free(other));
@@ -201,11 +200,7 @@ impl Opposite {
         for pair in by_pair.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).filter(|pair| pair.len() > 1) {
             let law = |(_, _, run, _): &PairRun| scene.law(runs[*run as usize].of(by_face));
             let first = law(&pair[0]);
-            let is_first = |run| match (law(run), first) {
-                (Some(a), Some(b)) => std::ptr::addr_eq(a, b),
-                _ => false,
-            };
-            if !may(pair[0].0) || !may(pair[0].1) || !pair.iter().all(is_first) {
+            if !may(pair[0].0) || !may(pair[0].1) || !pair.iter().all(|run| is_same_law(law(run), first)) {
                 continue;
             }
             if let Some((bearer, own, others)) = bearer(runs, pair) {
@@ -319,6 +314,11 @@ impl Joined<'_> {
         let places = start as u32..self.order.len() as u32;
         self.patches.push(PatchFacets { places, face, target, owner, weight });
     }
+}
+
+/// Whether both are there, and one and the same.
+fn is_same_law(a: Option<&dyn FrictionLaw>, b: Option<&dyn FrictionLaw>) -> bool {
+    matches!((a, b), (Some(a), Some(b)) if std::ptr::addr_eq(a, b))
 }
 
 fn is_opposite(a: &Vec3, b: &Vec3) -> bool {
