@@ -291,14 +291,20 @@ impl Run {
         summary.stages = std::mem::take(&mut outputs.stages.rows);
         let (folder, history) = outputs.end();
         let (sensitivity, built, tell, stop) = (self.sensitivity, self.built, self.tell, self.stop);
-        let has_twin =
-            loaded.scene.stages.is_empty() && is_whole(&summary) && sensitivity.wants_twin(&simulation);
-        if let Some(built) = built.filter(|_| has_twin) {
-            tell(
-                "running the scene a second time with velocities changed by 1e-4 of the largest speed, to see whether small differences grow (`--sensitivity never` skips this)",
-            );
+        let twins = match loaded.scene.stages.is_empty() && is_whole(&summary) {
+            true => sensitivity.twins(&simulation),
+            false => Vec::new(),
+        };
+        if let Some(built) = built.filter(|_| !twins.is_empty()) {
+            tell(&twin::told(&twins));
             let settle = loaded.scene.settle.map(crate::build::settle);
-            twin::judge(&mut summary, &mut simulation, &built, settle.as_ref(), (&stop, self.strict));
+            twin::judge(
+                &mut summary,
+                &mut simulation,
+                &built,
+                (settle.as_ref(), &twins),
+                (&stop, self.strict),
+            );
         }
         if let (Some(folder), Some(log)) = (folder, &mut log) {
             write_results(&folder, &loaded.scene.output, &summary, log)?;

@@ -18,7 +18,7 @@ pub struct RecordArgs {
     /// Column of accelerations of a CSV file, or of velocities of a history, as crest.velocity_x_m_s.
     #[arg(long, value_name = "NAME")]
     pub column: Option<String>,
-    /// Unit of the accelerations: g, m/s2 or cm/s2 [default: that which the file names, or m/s2].
+    /// Unit of the accelerations: g, m/s2 or cm/s2 [default: that which the file or the name of the column gives, or m/s2].
     #[arg(long, value_name = "UNIT", value_parser = parse_unit)]
     pub unit: Option<AccelerationUnit>,
     /// Factor on the accelerations.

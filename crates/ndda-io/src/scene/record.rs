@@ -209,7 +209,8 @@ fn raw(file: &Path, column: Option<&str>) -> Result<(Rows, Option<AccelerationUn
         return at2::parse(file, &String::from_utf8_lossy(&bytes));
     }
     let cure = "set `column` to the one that holds accelerations";
-    Ok((csv(file, &bytes, column.unwrap_or(ACCELERATION), cure)?, None))
+    let column = column.unwrap_or(ACCELERATION);
+    Ok((csv(file, &bytes, column, cure)?, AccelerationUnit::named_by(column)))
 }
 
 fn bytes_of(file: &Path) -> Result<Vec<u8>, RecordError> {
@@ -288,6 +289,24 @@ mod tests {
     fn a_record_is_read_with_comments_and_spaces() {
         let text = "# Somewhere, 1 January\ntime_s, acceleration_m_s2\n0, 0.5\n0.01, -1e-1\n";
         assert_eq!(read_text(text), Ok(vec![(0.0, 0.5), (0.01, -0.1)]));
+    }
+
+    #[test]
+    fn a_column_is_read_in_the_unit_that_its_name_ends_in_unless_the_scene_gives_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let first_m_s2 = |column: &str, more: &str| {
+            std::fs::write(folder.path().join("quake.csv"), format!("time_s,{column}\n0,1\n0.01,2\n"))
+                .unwrap();
+            let text = format!("(file: \"quake.csv\", column: Some(\"{column}\"){more})");
+            let record: Record = ron::from_str(&text).unwrap();
+            record.prepared(folder.path()).unwrap().rows[0].1
+        };
+        for (column, one_m_s2) in
+            [("a_g", 9.80665), ("ns_cm_s2", 0.01), ("EW_GAL", 0.01), ("acceleration_m_s2", 1.0), ("acc", 1.0)]
+        {
+            assert_eq!(first_m_s2(column, ""), one_m_s2, "{column}");
+        }
+        assert_eq!(first_m_s2("a_g", ", unit: Some(MetrePerSecondSquared)"), 1.0);
     }
 
     #[test]

@@ -14,7 +14,7 @@ pub struct Record {
     /// Column of accelerations of a CSV file. Default: `acceleration_m_s2`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub column: Option<String>,
-    /// Unit of the accelerations. Default: that which an `.at2` file names, m/s² for CSV.
+    /// Unit of the accelerations. Default: that which an `.at2` file names, or in which the name of the column ends (`_m_s2`, `_cm_s2`, `_gal`, `_g`), or m/s².
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit: Option<AccelerationUnit>,
     /// Factor on the accelerations; a negative one turns them round. Default: 1.
@@ -51,6 +51,20 @@ impl AccelerationUnit {
             Self::G => 9.80665,
             Self::MetrePerSecondSquared => 1.0,
             Self::CentimetrePerSecondSquared => 0.01,
+        }
+    }
+
+    /// The unit that the name of a column ends in, as in `acceleration_m_s2`, `ew_cm_s2`, `ns_gal` and `a_g`.
+    pub(crate) fn named_by(column: &str) -> Option<Self> {
+        let column = column.to_lowercase();
+        let ends = |endings: &[&str]| endings.iter().any(|ending| column.ends_with(ending));
+        match () {
+            () if ends(&["_cm_s2", "_gal", "(cm/s2)", "[cm/s2]", "(gal)", "[gal]"]) => {
+                Some(Self::CentimetrePerSecondSquared)
+            }
+            () if ends(&["_m_s2", "(m/s2)", "[m/s2]"]) => Some(Self::MetrePerSecondSquared),
+            () if ends(&["_g", "(g)", "[g]"]) => Some(Self::G),
+            () => None,
         }
     }
 

@@ -206,17 +206,27 @@ impl Prototype {
             stiffness_n_m,
             inertia_error,
         };
-        let failed = |source| SetupError::Factor { block: name(), source };
-        shape.factor = shape.factored(weights, solver).map_err(failed)?;
-        shape.filter = shape.factored_filter(weights, solver).map_err(failed)?;
+        shape.refactor(weights, solver).map_err(|source| SetupError::Factor { block: name(), source })?;
         Ok(shape)
     }
 
-    /// K̃ of a step with these weights, factored; nothing when nothing is to be solved for.
+    /// Takes the factors of a step with these weights, and of its filter, in the place of those in use.
     ///
     /// # Errors
-    /// [`FactorError`] when it is not positive definite or too large.
-    pub(crate) fn factored(
+    /// [`FactorError`] when a matrix is not positive definite or too large.
+    pub(crate) fn refactor(
+        &mut self,
+        weights: &StepWeights,
+        solver: &dyn LinearSolver,
+    ) -> Result<(), FactorError> {
+        (self.factor, self.filter) = (None, None);
+        self.factor = self.factored(weights, solver)?;
+        self.filter = self.factored_filter(weights, solver)?;
+        Ok(())
+    }
+
+    /// K̃ of a step with these weights, factored; nothing when nothing is to be solved for.
+    fn factored(
         &self,
         weights: &StepWeights,
         solver: &dyn LinearSolver,
@@ -229,10 +239,7 @@ impl Prototype {
     }
 
     /// M + k K factored; nothing without damping in proportion to stiffness, or when nothing is to be solved for.
-    ///
-    /// # Errors
-    /// [`FactorError`] when it is not positive definite or too large.
-    pub(crate) fn factored_filter(
+    fn factored_filter(
         &self,
         weights: &StepWeights,
         solver: &dyn LinearSolver,

@@ -19,6 +19,8 @@ const STICKS: f64 = 3.0;
 /// Speed of the fastest node over all that touches have added to the velocity of the block, below which it slides so slowly that its surface may stick in
 /// its vibrations: a block that slides down a slope α has sin α − μ cos α.
 const SLOW: f64 = 0.1;
+/// So many impacts of a block make small errors of one grow in the next ones.
+const SEVERAL: usize = 3;
 
 /// The hops of one block.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -47,6 +49,8 @@ pub(crate) struct Hops {
     /// Flights that were hardly longer than the touch before, in which friction acted, of a block that slides slowly, and the speed of the fastest.
     rubbing: u32,
     rubbing_m_s: f64,
+    /// The largest pushes of touches that a flight has ended, the largest first [m/s].
+    impacts_m_s: [f64; SEVERAL],
 }
 
 impl Hops {
@@ -60,9 +64,21 @@ impl Hops {
             self.push_m_s += dt_s * (drive.shift_m_s2 - drive.load_m_s2);
             self.rubbed |= drive.has_friction;
         } else {
+            if self.touched {
+                self.lift_off();
+            }
             self.flight_s += dt_s;
         }
         self.touched = drive.touches;
+    }
+
+    fn lift_off(&mut self) {
+        let mut push_m_s = self.push_m_s.norm();
+        for impact_m_s in &mut self.impacts_m_s {
+            if push_m_s > *impact_m_s {
+                std::mem::swap(&mut push_m_s, impact_m_s);
+            }
+        }
     }
 
     fn land(&mut self, speed_m_s: f64) {
@@ -103,6 +119,11 @@ impl Hops {
         } else {
             (self.stopped, self.stopped_m_s)
         }
+    }
+
+    /// What contact added to the velocity of the block in the third largest of its impacts, after each of which it flew on \[m/s\]; 0 where there were fewer.
+    pub(crate) fn third_impact_m_s(&self) -> f64 {
+        self.impacts_m_s[SEVERAL - 1]
     }
 
     /// Flights that were hardly longer than the touch before, in which friction acted and could stop the block, and the largest speed at which one ended [m/s].
@@ -169,6 +190,20 @@ mod tests {
         assert_eq!(counted(false, 1.0, 2), [(0, 0.0); 2]);
         // Too fast to be stopped by one touch, but slow beside what 41 and more of them push it by.
         assert_eq!(counted(true, 4.0, 45), [(0, 0.0), (4, 4.0)]);
+    }
+
+    #[test]
+    fn the_third_largest_push_of_touches_that_flights_ended_is_known() {
+        let mut hops = Hops::default();
+        let touch = |hops: &mut Hops, push_m_s2: f64| hops.add(1e-3, &on_ground(false, push_m_s2, 1.0));
+        for push_m_s2 in [500.0, 3000.0, 1000.0, 2000.0] {
+            touch(&mut hops, push_m_s2);
+            touch(&mut hops, push_m_s2);
+            hops.add(1e-3, &RigidForcing::default());
+        }
+        // The fifth touch lasts.
+        touch(&mut hops, 9000.0);
+        assert!((hops.third_impact_m_s() - 2.0).abs() < 1e-12, "{}", hops.third_impact_m_s());
     }
 
     #[test]

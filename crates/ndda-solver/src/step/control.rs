@@ -300,14 +300,30 @@ impl Simulation {
                 (shape.factor, shape.filter) = (Some(step), filter);
                 continue;
             }
-            let failed = |source| StepError::Factor { step_s: self.part_s, source };
-            shape.factor = shape.factored(&self.weights, self.problem.solver.as_ref()).map_err(failed)?;
-            shape.filter =
-                shape.factored_filter(&self.weights, self.problem.solver.as_ref()).map_err(failed)?;
+            shape
+                .refactor(&self.weights, self.problem.solver.as_ref())
+                .map_err(|source| StepError::Factor { step_s: self.part_s, source })?;
         }
         control.halvings = halvings;
         self.renew_scratches();
         Ok(())
+    }
+
+    /// Makes the step of the scene another one \[s\]: the time so far is that of as many of the new ones.
+    ///
+    /// # Errors
+    /// [`StepError::Factor`] where a block cannot be solved for with it.
+    pub fn change_step(&mut self, step_s: f64) -> Result<(), StepError> {
+        (self.problem.base_step_s, self.part_s) = (step_s, step_s);
+        self.weights = self.weights_of(step_s);
+        for shape in &mut self.problem.shapes {
+            shape.damping = StepDamping::new(&shape.material.damping(), step_s, &self.weights);
+        }
+        if let Some(control) = &mut self.control {
+            control.halvings = 0;
+        }
+        let all: Vec<usize> = (0..self.problem.shapes.len()).collect();
+        self.factor_anew(&all)
     }
 
     /// Memory of solves for the factors in use.

@@ -19,19 +19,22 @@ pub struct Accuracy {
     pub friction: f64,
     /// Largest depth of a contact over the width of the boulder.
     pub depth: f64,
-    /// Balance of energy since the release [J].
+    /// Balance of energy since the release, and energy stored in contact now [J].
     #[serde(skip)]
     balance_j: f64,
+    #[serde(skip)]
+    stored_j: f64,
 }
 
 impl Accuracy {
-    /// Adds the errors of a window [J], which is over. Within a contact the balance is off by what comes back when it ends, so that it counts only where the
-    /// boulder does not touch the ground.
+    /// Adds the errors of a window [J], which is over. Within a contact the balance is off by what comes back when it ends, a part of the energy that the
+    /// contact stores, so that it counts only where the boulder does not touch the ground, and at the end.
     pub(super) fn add(&mut self, simulation: &Simulation, sample: &Sample, touches: bool) {
         let worst = simulation.invariants();
         let mass_kg = simulation.shape(super::contact::BOULDER).operator.mass_kg;
         let scale_j = 0.5 * mass_kg * simulation.speed_scale_m_s().powi(2);
         self.balance_j += sample.balance_j;
+        self.stored_j = if touches { sample.contact_j } else { 0.0 };
         if !touches {
             self.energy = self.energy.max(self.balance_j.abs());
         }
@@ -41,12 +44,12 @@ impl Accuracy {
 
     /// Turns energies into parts of the largest kinetic energy.
     pub(super) fn close(&mut self, largest_j: f64) {
-        self.energy = self.energy.max(self.balance_j.abs());
+        self.energy = self.energy.max(self.balance_j.abs() - self.stored_j);
         if largest_j > 0.0 {
             self.energy /= largest_j;
             self.friction /= largest_j;
         }
-        self.balance_j = 0.0;
+        (self.balance_j, self.stored_j) = (0.0, 0.0);
     }
 
     /// Whether all errors are within their limits.
@@ -89,7 +92,7 @@ impl Accuracy {
             energy: self.energy.max(other.energy),
             friction: self.friction.max(other.friction),
             depth: self.depth.max(other.depth),
-            balance_j: 0.0,
+            ..Self::default()
         }
     }
 }

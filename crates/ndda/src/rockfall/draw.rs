@@ -10,6 +10,12 @@ use crate::sweep::distribution::quantile;
 /// Halvings in which the part of a distribution below a value is found.
 const HALVINGS: u32 = 60;
 
+/// Limits at which restitutions are cut off, and friction angles [°].
+pub(super) const RESTITUTIONS: (f64, f64) = (0.0, 1.0);
+pub(super) const FRICTIONS_DEG: (f64, f64) = (0.0, 89.0);
+/// Part of a distribution that is not worth a line where it is cut off.
+pub(super) const LITTLE: f64 = 1e-3;
+
 /// What a number is for; numbers of one boulder for different ends are independent.
 #[derive(Clone, Copy)]
 pub(super) enum Of {

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::accuracy::Accuracy;
 use super::boulder::Boulder;
 use super::contact::BOULDER;
-use super::draw::{Draw, Of};
+use super::draw::{Draw, FRICTIONS_DEG, Of, RESTITUTIONS};
 use super::passage::{Moment, crossing};
 use super::release;
 use super::terrain::Terrain;
@@ -30,8 +30,6 @@ const FAR_STEPS: f64 = 4.0;
 /// little that matters to its fall.
 const STEP_ENERGY: f64 = 1e-4;
 const MOST_STEP_ENERGY: f64 = 0.02;
-/// Angles that friction is cut off at [°].
-const MOST_FRICTION_DEG: (f64, f64) = (0.0, 89.0);
 
 /// How a fall ended.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -119,10 +117,10 @@ impl Case<'_> {
     fn laws(&self, boulder: &Boulder, draw: &Draw) -> Laws {
         let Rockfall { ground, zones, detail, .. } = self.rockfall;
         let restitutions = std::iter::once(&ground.restitution).chain(zones.iter().map(|z| &z.restitution));
-        let each = |(k, e)| draw.value(Of::Restitution, k, e, (0.0, 1.0));
+        let each = |(k, e)| draw.value(Of::Restitution, k, e, RESTITUTIONS);
         let restitution: Vec<f64> = restitutions.enumerate().map(each).collect();
         let frictions = std::iter::once(&ground.friction_deg).chain(zones.iter().map(|z| &z.friction_deg));
-        let each = |(k, phi)| draw.value(Of::Friction, k, phi, MOST_FRICTION_DEG);
+        let each = |(k, phi)| draw.value(Of::Friction, k, phi, FRICTIONS_DEG);
         let density_kg_m3 = self.material.density_kg_m3;
         Laws {
             penalty_pa: STIFFNESS * density_kg_m3 * detail.impact_m_s.powi(2) / boulder.diameter_m(),

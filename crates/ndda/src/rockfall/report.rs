@@ -3,13 +3,12 @@
 use std::fmt::{self, Write as _};
 
 use super::Model;
+use super::draw::LITTLE;
 use super::result::{Ends, Outcome};
 use super::spread::{Runout, Spread};
 use crate::columns::columns;
 use crate::numbers::counted;
 
-/// Part of the sizes that is not worth a line where it is cut off.
-const LITTLE: f64 = 1e-3;
 /// Classes listed at most.
 const LISTED: usize = 8;
 

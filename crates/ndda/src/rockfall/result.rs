@@ -2,7 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
+use ndda_io::scene::Rockfall;
+
 use super::accuracy::Accuracy;
+use super::draw::{self, FRICTIONS_DEG, LITTLE, RESTITUTIONS};
 use super::fall::{End, Fall};
 use super::passage::{Moment, length_m};
 use super::profile;
@@ -76,7 +79,7 @@ pub struct LineResult {
     pub name: String,
     /// Boulders that reached it.
     pub reached: usize,
-    /// Boulders that had not, and whose falls were not over at the end: they might.
+    /// Boulders that had not, and that were last seen on their way, or left the terrain: they might.
     pub might: usize,
     /// Part of all boulders that reached it; a lower bound where others might.
     pub probability: f64,
@@ -173,7 +176,31 @@ fn warnings(model: &Model, falls: &[Fall]) -> Vec<String> {
             ends.stopped
         ));
     }
+    warnings.extend(laws_cut_off(model));
     warnings
+}
+
+/// Restitutions and friction angles of which a part of the distribution is cut off.
+fn laws_cut_off(model: &Model) -> Vec<String> {
+    let Rockfall { ground, zones, .. } = &model.rockfall;
+    let all = std::iter::once(("the ground", &ground.restitution, &ground.friction_deg))
+        .chain(zones.iter().map(|zone| (zone.name.as_str(), &zone.restitution, &zone.friction_deg)));
+    let mut found = Vec::new();
+    for (name, restitution, friction_deg) in all {
+        for (what, scatter, limits) in
+            [("restitution", restitution, RESTITUTIONS), ("friction_deg", friction_deg, FRICTIONS_DEG)]
+        {
+            let part =
+                scatter.as_distribution().map_or(0.0, |distribution| draw::beyond(&distribution, limits));
+            if part > LITTLE {
+                found.push(format!(
+                    "{what} of `{name}`: {:.1} % of its distribution lies beyond {} to {} and is cut off; give it a smaller spread, or a `Triangular` one",
+                    100.0 * part, limits.0, limits.1
+                ));
+            }
+        }
+    }
+    found
 }
 
 fn lines(model: &Model, falls: &[Fall]) -> Vec<LineResult> {
@@ -181,8 +208,7 @@ fn lines(model: &Model, falls: &[Fall]) -> Vec<LineResult> {
         let first =
             |fall: &Fall| fall.passages.iter().find(|(line, _)| *line == k).map(|(_, moment)| *moment);
         let moments: Vec<Moment> = falls.iter().filter_map(first).collect();
-        let is_over = |fall: &Fall| matches!(fall.end, End::Rest | End::LeftTerrain);
-        let might = falls.iter().filter(|fall| !is_over(fall) && first(fall).is_none()).count();
+        let might = falls.iter().filter(|fall| fall.end != End::Rest && first(fall).is_none()).count();
         let [low, _] = wilson(moments.len(), falls.len());
         let [_, high] = wilson(moments.len() + might, falls.len());
         LineResult {

@@ -1,26 +1,29 @@
-//! Whether single positions of a run mean anything: a twin that begins with other velocities, by a ten-thousandth of the largest speed, and
-//! ends somewhere else, or with other velocities, where the motion is sensitive, as in heaps, falling columns, toppling slopes, and where a block hops on
-//! contact that is not damped.
+//! Whether a run's end may be believed although each of its steps may: runs of the same scene that differ a little, its *twins*.
+//!
+//! A twin that begins with other velocities, by a ten-thousandth of the largest speed, ends somewhere else, or with other velocities, where the motion is
+//! sensitive: in heaps, falling columns, toppling slopes, and where a block hops on contact that is not damped. One with a shorter step does where the errors
+//! of impacts have grown in the next ones.
 
-use std::fmt;
+mod parted;
+
 use std::ops::ControlFlow;
 use std::str::FromStr;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use ndda_mesh::geometry::tet_heights;
-use ndda_mesh::{BlockId, TetId, Vec3};
+use ndda_mesh::{BlockId, Vec3};
 use ndda_solver::{BodyKind, Settle, Simulation, StartSnapshot, StepError};
 
 use super::unless_ended;
 use crate::judge::words::SECOND_RUN;
-use crate::numbers::{counted, length};
 use crate::summary::{Label, LabelWord, Status, Summary};
+pub(super) use parted::Parted;
+use parted::{farthest_m, height_m, parted};
 
-/// Whether a twin of the run is run after it.
+/// Whether twins of the run are run after it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Sensitivity {
-    /// Where three or more blocks have moved in an accurate run, or one has hopped several times with friction in between.
+    /// Where three or more blocks have moved in an accurate run, one has hopped several times with friction in between, or one has hit three times or more.
     #[default]
     Auto,
     /// After each accurate run with contact.
@@ -42,36 +45,30 @@ impl FromStr for Sensitivity {
     }
 }
 
-/// Velocities of the twin differ by this part of the largest speed.
+/// How a twin differs from its run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Twin {
+    /// Its velocities at the start, by so many ten-thousandths of the largest speed.
+    Push(f64),
+    /// Its step, which is so many times as long.
+    Step(f64),
+}
+
+/// Velocities of a twin differ by this part of the largest speed.
 const PUSH: f64 = 1e-4;
-/// Pushes of the twins over [`PUSH`]. There is one twin; where a block hops, the next one is run as long as none has parted, since a single one may end near the
-/// run by chance.
-const PUSHES: [f64; 3] = [1.0, -1.0, 0.5];
-/// Blocks of the twin may end this part of a tetrahedron's height away: a third of what an accurate label allows.
-const AWAY: f64 = 0.03;
+/// Pushes of the twins over [`PUSH`]. There is one such twin; where a block hops, the next one is run as long as none has parted, since a single one may end
+/// near the run by chance.
+const PUSHES: [Twin; 3] = [Twin::Push(1.0), Twin::Push(-1.0), Twin::Push(0.5)];
+/// Of second order, its errors are 0.64 of those of the run, and its impacts fall elsewhere in its steps.
+const SHORTER: Twin = Twin::Step(0.8);
 /// Without growth, a push shifts a block by its speed times the time of the run; this many times that is no growth.
 const DRIFTS: f64 = 3.0;
-/// Velocities of the twin may differ by this part of the largest speed, as in an accurate label.
-const FASTER: f64 = 0.01;
 /// So many blocks must move for their motions to disturb each other.
 const ENOUGH: usize = 3;
 /// So many hops of one block, with friction in between, make small differences grow.
 const HOPS: f64 = 8.0;
-
-/// Where a run and its twin part.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Parted {
-    /// Name of the block whose end differs most, over what is allowed.
-    pub block: String,
-    /// How far it ends from where it ends in the run [m].
-    pub apart_m: f64,
-    /// By how much its velocity differs [m/s], where that is what is too much.
-    pub faster_m_s: Option<f64>,
-    /// How many blocks differ more than allowed.
-    pub blocks: usize,
-    /// Whether a block hopped many times with friction in between.
-    pub hops: bool,
-}
+/// Part of the largest speed that contact adds to the velocity of a block in its third largest impact, from which on a shorter step is tried.
+const IMPACT: f64 = 0.1;
 
 /// Whether a run that begins here makes a twin, by default, if its blocks move far enough.
 pub(crate) fn may_want_twin(simulation: &Simulation) -> bool {
@@ -80,103 +77,105 @@ pub(crate) fn may_want_twin(simulation: &Simulation) -> bool {
 }
 
 impl Sensitivity {
-    /// Whether the twin of an accurate run that ends here is to be run.
-    pub(super) fn wants_twin(self, simulation: &Simulation) -> bool {
+    /// The twins of an accurate run that ends here, to be run one after the other until one parts.
+    pub(super) fn twins(self, simulation: &Simulation) -> Vec<Twin> {
         let ids = || simulation.blocks().ids();
         let moved = || {
             ids().filter(|&block| {
                 let gone_m =
-                    farthest(simulation, block, simulation.start_position(), &simulation.state().position);
+                    farthest_m(simulation, block, simulation.start_position(), &simulation.state().position);
                 moves(simulation, block) && gone_m > 0.1 * height_m(simulation, block)
             })
         };
-        simulation.has_contact()
-            && match self {
-                Self::Never => false,
-                Self::Always => ids().any(|block| moves(simulation, block)),
-                Self::Auto => moved().take(ENOUGH).count() == ENOUGH || hops(simulation),
+        let hops = hops(simulation);
+        let (pushes, shorter) = match self {
+            _ if !simulation.has_contact() => (false, false),
+            Self::Never => (false, false),
+            Self::Always => {
+                let any = ids().any(|block| moves(simulation, block));
+                (any, any)
             }
+            Self::Auto => (moved().take(ENOUGH).count() == ENOUGH || hops, hits_again(simulation)),
+        };
+        let mut twins = match (pushes, hops) {
+            (false, _) => Vec::new(),
+            (true, false) => PUSHES[..1].to_vec(),
+            (true, true) => PUSHES.to_vec(),
+        };
+        twins.extend(shorter.then_some(SHORTER));
+        twins
     }
 }
 
-/// Changes the label of an accurate run to sensitive if its twin ends elsewhere, and books the time that this takes.
+/// What is told before twins are run.
+pub(super) fn told(twins: &[Twin]) -> String {
+    let pushed = "velocities changed by 1e-4 of the largest speed";
+    let by = match (twins.contains(&PUSHES[0]), twins.contains(&SHORTER)) {
+        (true, true) => format!("{pushed}, then with a shorter step"),
+        (true, false) => pushed.into(),
+        (false, _) => "a shorter step, since blocks have hit several times".into(),
+    };
+    format!(
+        "running the scene again with {by}, to see whether small differences grow (`--sensitivity never` skips this)"
+    )
+}
+
+/// Changes the label of an accurate run if a twin ends elsewhere, and books the time that this takes.
 pub(super) fn judge(
     summary: &mut Summary,
     simulation: &mut Simulation,
     start: &StartSnapshot,
-    settle: Option<&Settle>,
+    (settle, twins): (Option<&Settle>, &[Twin]),
     (stop, strict): (&AtomicBool, bool),
 ) {
     let began = Instant::now();
-    match part(simulation, start, settle, stop) {
+    let found = match part(simulation, start, settle, twins, stop) {
         Ok(None) if stop.load(Ordering::Relaxed) => {
             summary.warnings.push(
                 "the second run was interrupted, so it is not known whether the motion is sensitive".into(),
             );
+            None
         }
-        Ok(None) => {}
-        Ok(Some(parted)) => {
-            summary.label = Label { word: LabelWord::Sensitive, reasons: vec![parted.to_string()] };
-            summary.status = if strict { Status::Failed } else { summary.status };
-        }
-        Err(error) => {
-            let reason =
-                format!("a second run whose start differs by 1e-4 of the largest speed stops {error}");
-            summary.label = Label { word: LabelWord::Sensitive, reasons: vec![reason] };
-            summary.status = if strict { Status::Failed } else { summary.status };
-        }
+        Ok(parted) => parted.map(|parted| (parted.word(), parted.to_string())),
+        Err(error) => Some((
+            LabelWord::Sensitive,
+            format!("a second run, whose start or step differs a little, stops {error}"),
+        )),
+    };
+    if let Some((word, reason)) = found {
+        summary.label = Label { word, reasons: vec![reason] };
+        summary.status = if strict { Status::Failed } else { summary.status };
     }
     let spent_s = began.elapsed().as_secs_f64();
     summary.wall_s += spent_s;
     summary.stages_s.0.push((SECOND_RUN.into(), spent_s));
 }
 
-impl fmt::Display for Parted {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let Self { block, apart_m, faster_m_s, blocks, hops } = self;
-        let many = counted(*blocks, "block differs", "blocks differ");
-        let (ends, by, single) = match faster_m_s {
-            Some(faster) => ("with other velocities", format!("{faster:.1e} m/s"), "velocities"),
-            None => ("elsewhere", length(*apart_m), "positions"),
-        };
-        write!(
-            f,
-            "a start that differs by 1e-4 of the largest speed ends {ends}: {many}, `{block}` by {by}; believe the overall behaviour or \
-             statistics of several runs (ndda certify), not the {single} of single blocks"
-        )?;
-        if *hops {
-            write!(
-                f,
-                "; blocks hop because contact is not damped: a restitution of 0.5 ends that, or `settle: ()` where gravity starts it"
-            )?;
-        }
-        Ok(())
-    }
-}
-
-/// Runs the twin of a simulation that has come to its end from `start`, or several, and puts it back into its end. None where all stay together, or
+/// Runs twins of a simulation that has come to its end from `start`, and puts it back into its end. None where all stay together, or
 /// where somebody asks to end.
 ///
 /// # Errors
-/// [`StepError`] that stops the twin; the end is put back then, too.
+/// [`StepError`] that stops a twin; the end is put back then, too.
 pub(super) fn part(
     simulation: &mut Simulation,
     start: &StartSnapshot,
     settle: Option<&Settle>,
+    twins: &[Twin],
     stop: &AtomicBool,
 ) -> Result<Option<Parted>, StepError> {
-    let end = simulation.snapshot();
-    let push_m_s = PUSH * simulation.speed_scale_m_s();
-    let drift_m = DRIFTS * push_m_s * simulation.time_s();
-    let pushes = if hops(simulation) { &PUSHES[..] } else { &PUSHES[..1] };
-    for push in pushes {
-        let outcome = run(simulation, start, (push * push_m_s, end.state.step), settle, stop);
-        let twin = (simulation.state().position.clone(), simulation.state().velocity.clone());
+    let (end, step_s) = (simulation.snapshot(), simulation.step_s());
+    let drift_m = DRIFTS * PUSH * simulation.speed_scale_m_s() * simulation.time_s();
+    for &twin in twins {
+        let outcome = run(simulation, start, (twin, end.state.step), settle, stop);
+        let ended = (simulation.state().position.clone(), simulation.state().velocity.clone());
+        if simulation.step_s() != step_s {
+            simulation.change_step(step_s)?;
+        }
         simulation.restore(end.clone()).expect("it is of this simulation");
         if !outcome? {
             break;
         }
-        let parted = compare(simulation, &twin, drift_m);
+        let parted = parted(simulation, twin, &ended, drift_m);
         if parted.is_some() {
             return Ok(parted);
         }
@@ -184,25 +183,37 @@ pub(super) fn part(
     Ok(None)
 }
 
-/// Whether the twin came to its end.
+/// Whether the twin of a run of so many steps came to its end.
 fn run(
     simulation: &mut Simulation,
     start: &StartSnapshot,
-    (push_m_s, steps): (f64, u64),
+    (twin, steps): (Twin, u64),
     settle: Option<&Settle>,
     stop: &AtomicBool,
 ) -> Result<bool, StepError> {
-    let mut pushed = simulation.whole(start);
-    for block in simulation.blocks().ids().filter(|&block| moves(simulation, block)) {
-        let push = push_m_s * direction(block);
-        pushed.state.velocity[simulation.blocks().nodes_of(block)].iter_mut().for_each(|v| *v += push);
+    let mut changed = simulation.whole(start);
+    let mut steps_of_twin = steps;
+    match twin {
+        Twin::Push(times) => {
+            let push_m_s = times * PUSH * simulation.speed_scale_m_s();
+            for block in simulation.blocks().ids().filter(|&block| moves(simulation, block)) {
+                let push = push_m_s * direction(block);
+                changed.state.velocity[simulation.blocks().nodes_of(block)]
+                    .iter_mut()
+                    .for_each(|v| *v += push);
+            }
+        }
+        Twin::Step(times) => {
+            steps_of_twin = (steps as f64 / times).ceil() as u64;
+            simulation.change_step(simulation.step_s() * steps as f64 / steps_of_twin as f64)?;
+        }
     }
-    simulation.restore(pushed).expect("it is of this simulation");
+    simulation.restore(changed).expect("it is of this simulation");
     let ranks = simulation.ranks().clone();
     if let Some(settle) = settle {
         simulation.settle_watched(settle, &mut |_| unless_ended(&*ranks, stop))?;
     }
-    while simulation.state().step < steps {
+    while simulation.state().step < steps_of_twin {
         if unless_ended(&*ranks, stop) == ControlFlow::Break(()) {
             return Ok(false);
         }
@@ -211,73 +222,20 @@ fn run(
     Ok(true)
 }
 
-/// Where positions and velocities of the twin are too far from those of the run. A velocity counts only where the position has gone farther than the
-/// difference at the start would take it by itself: in the middle of a collision, a moment makes all the difference.
-fn compare(simulation: &Simulation, twin: &(Vec<Vec3>, Vec<Vec3>), drift_m: f64) -> Option<Parted> {
-    let (state, largest_m_s) = (simulation.state(), simulation.speed_scale_m_s());
-    let differs = |block: BlockId| {
-        let apart_m = farthest(simulation, block, &state.position, &twin.0);
-        let faster_m_s = (mean(simulation, block, &state.velocity) - mean(simulation, block, &twin.1)).norm();
-        let place = apart_m / (AWAY * height_m(simulation, block) + drift_m);
-        let speed = if apart_m > drift_m { faster_m_s / (FASTER * largest_m_s) } else { 0.0 };
-        Difference { block, apart_m, faster_m_s, place, speed }
-    };
-    let all: Vec<Difference> = simulation.blocks().ids().map(differs).collect();
-    // A position that is elsewhere says more than a velocity.
-    let is_elsewhere = all.iter().any(|one| one.place > 1.0);
-    let over = |one: &Difference| if is_elsewhere { one.place } else { one.speed };
-    let worst = all.iter().max_by(|a, b| over(a).total_cmp(&over(b))).filter(|one| over(one) > 1.0)?;
-    Some(Parted {
-        block: simulation.blocks().names[worst.block.index()].clone(),
-        apart_m: worst.apart_m,
-        faster_m_s: (!is_elsewhere).then_some(worst.faster_m_s),
-        blocks: all.iter().filter(|one| over(one) > 1.0).count(),
-        hops: hops(simulation),
-    })
-}
-
-/// How far a block of the twin is from that of the run.
-struct Difference {
-    block: BlockId,
-    /// Distance [m] and difference of velocities [m/s].
-    apart_m: f64,
-    faster_m_s: f64,
-    /// The same over what is allowed.
-    place: f64,
-    speed: f64,
-}
-
-/// Mean velocity of the nodes of a block [m/s].
-fn mean(simulation: &Simulation, block: BlockId, velocity: &[Vec3]) -> Vec3 {
-    let own = &velocity[simulation.blocks().nodes_of(block)];
-    own.iter().sum::<Vec3>() / own.len() as f64
-}
-
 /// Whether a block has hopped many times with friction in between that could stop it.
 fn hops(simulation: &Simulation) -> bool {
     simulation.invariants().hops_with_friction.value >= HOPS
+}
+
+/// Whether a block has hit several times.
+fn hits_again(simulation: &Simulation) -> bool {
+    simulation.invariants().third_impact.value >= IMPACT
 }
 
 /// Whether a block moves as forces ask.
 fn moves(simulation: &Simulation, block: BlockId) -> bool {
     let shape = simulation.shape(block);
     shape.kind != BodyKind::Fixed && shape.is_free()
-}
-
-/// Median of the smallest heights of a block's tetrahedra [m]: a sliver inside a block is not what touches.
-fn height_m(simulation: &Simulation, block: BlockId) -> f64 {
-    let blocks = simulation.blocks();
-    let heights = |tet| tet_heights(&blocks.tet_corners(TetId(tet as u32), &blocks.rest_position));
-    let lowest = blocks.tets_of(block).map(|tet| heights(tet).into_iter().fold(f64::INFINITY, f64::min));
-    let mut lowest: Vec<f64> = lowest.collect();
-    let middle = lowest.len() / 2;
-    *lowest.select_nth_unstable_by(middle, f64::total_cmp).1
-}
-
-/// Largest distance of a node of a block in two states [m].
-fn farthest(simulation: &Simulation, block: BlockId, one: &[Vec3], other: &[Vec3]) -> f64 {
-    let nodes = simulation.blocks().nodes_of(block);
-    one[nodes.clone()].iter().zip(&other[nodes]).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max)
 }
 
 /// A direction for each block, spread over the sphere by the golden angle (Fibonacci's lattice).
@@ -366,6 +324,27 @@ mod tests {
         let set = ["gravity_ramp_s=0", "contact.penalty_pa=6e10", "output.frames=0"].map(String::from);
         let summary = Run::new(Model::open(&file, &set).unwrap()).finish(&mut []).unwrap().summary;
         assert_eq!(summary.label.word, LabelWord::Sensitive, "{:?}", summary.label.reasons);
+    }
+
+    #[test]
+    fn a_stone_whose_impacts_have_grown_an_error_is_inaccurate_until_its_step_is_halved() {
+        let stone = |step_s: f64| {
+            let text = format!(
+                "(title: \"stone\", time: (step_s: {step_s:e}, end_s: 1.2), gravity_m_s2: (0, 0, -9.81),
+                materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: 2650)],
+                blocks: [
+                    (name: \"floor\", material: \"rock\", body: Fixed, shape: Box(size_m: (20, 20, 1), cells: (1, 1, 1)), at_m: (-10, -10, -1)),
+                    (name: \"stone\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 0.5, 0.5), cells: (1, 1, 1)),
+                        turns: [(axis: (1, 1, -1), angle_deg: 60)], at_m: (0, 0, 1.6), spin_rad_s: (1, -1, 0)),
+                ],
+                contact: Potential(potential: Smooth(), friction: (friction_deg: 20), restitution: 0.5))"
+            );
+            Run::new(Model::from_text(&text).unwrap()).finish(&mut []).unwrap().summary.label
+        };
+        let (long, short) = (stone(2e-4), stone(1e-4));
+        assert_eq!(long.word, LabelWord::Inaccurate, "{:?}", long.reasons);
+        assert!(long.reasons[0].contains("errors of impacts grow"), "{:?}", long.reasons);
+        assert_eq!(short.word, LabelWord::Accurate, "{:?}", short.reasons);
     }
 
     #[test]

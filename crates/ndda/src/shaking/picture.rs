@@ -26,7 +26,7 @@ pub(super) fn draw(shaking: &Shaking, motion: &Motion, out: &Path) -> Result<(),
         (over_time("displacement", &motion.displacement), "displacement [m]"),
     ];
     let shown = shaking.spectrum.iter().filter(|r| r.period_s <= LONGEST_S);
-    let points = shown.map(|r| (r.period_s, r.acceleration_m_s2)).collect();
+    let points = shown.map(|r| (r.period_s, r.pseudo_acceleration_m_s2)).collect();
     let damping = format!("{} % of critical", 100.0 * shaking.damping);
     let spectrum = Line { name: damping, points };
     write(out, SIZE, |root| {

@@ -26,7 +26,10 @@ pub fn tell(shaking: &Shaking) -> String {
     for told_s in TOLD_S {
         let nearest = shaking.spectrum.iter().min_by(|a, b| off(a, told_s).total_cmp(&off(b, told_s)));
         if let Some(response) = nearest {
-            line(format!("    {:>6.3} s {:>10.4} m/s²", response.period_s, response.acceleration_m_s2));
+            line(format!(
+                "    {:>6.3} s {:>10.4} m/s²",
+                response.period_s, response.pseudo_acceleration_m_s2
+            ));
         }
     }
     if let Some(slips) = &shaking.slip {
@@ -57,9 +60,9 @@ pub(super) fn write_tables(shaking: &Shaking, motion: &Motion) -> Result<(), Wri
         writeln!(text, "{time_s},{a},{v},{u}").expect("a string takes all");
     }
     atomic::write(&shaking.tables[0], text.as_bytes())?;
-    let mut text = String::from("period_s,displacement_m,velocity_m_s,acceleration_m_s2\n");
+    let mut text = String::from("period_s,displacement_m,pseudo_velocity_m_s,pseudo_acceleration_m_s2\n");
     for r in &shaking.spectrum {
-        let values = (r.period_s, r.displacement_m, r.velocity_m_s, r.acceleration_m_s2);
+        let values = (r.period_s, r.displacement_m, r.pseudo_velocity_m_s, r.pseudo_acceleration_m_s2);
         writeln!(text, "{},{},{},{}", values.0, values.1, values.2, values.3).expect("a string takes all");
     }
     atomic::write(&shaking.tables[1], text.as_bytes())

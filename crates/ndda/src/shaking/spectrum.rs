@@ -18,9 +18,9 @@ pub struct Response {
     /// Peak of the displacement relative to the base, S_d [m].
     pub displacement_m: f64,
     /// Pseudo-velocity ω S_d [m/s].
-    pub velocity_m_s: f64,
+    pub pseudo_velocity_m_s: f64,
     /// Pseudo-acceleration ω² S_d [m/s²].
-    pub acceleration_m_s2: f64,
+    pub pseudo_acceleration_m_s2: f64,
 }
 
 /// Periods of a spectrum, evenly spaced by their ratio [s].
@@ -47,8 +47,8 @@ pub fn response(rows: &[(f64, f64)], period_s: f64, damping: f64) -> Response {
     Response {
         period_s,
         displacement_m,
-        velocity_m_s: omega * displacement_m,
-        acceleration_m_s2: omega * omega * displacement_m,
+        pseudo_velocity_m_s: omega * displacement_m,
+        pseudo_acceleration_m_s2: omega * omega * displacement_m,
     }
 }
 
@@ -104,7 +104,10 @@ mod tests {
             let found = response(&[(0.0, 3.0), (10.0, 3.0)], 0.7, damping);
             let over = (-std::f64::consts::PI * damping / (1.0 - damping * damping).sqrt()).exp();
             let exact = 3.0 * (1.0 + over);
-            assert!((found.acceleration_m_s2 / exact - 1.0).abs() < 1.3e-3, "{damping}: {found:?} {exact}");
+            assert!(
+                (found.pseudo_acceleration_m_s2 / exact - 1.0).abs() < 1.3e-3,
+                "{damping}: {found:?} {exact}"
+            );
         }
     }
 
@@ -126,6 +129,6 @@ mod tests {
     fn a_long_sine_is_enlarged_by_the_inverse_of_twice_the_damping() {
         let rows: Vec<_> = (0..40_000).map(|i| 0.002 * f64::from(i)).map(|t| (t, (TAU * t).sin())).collect();
         let found = response(&rows, 1.0, 0.05);
-        assert!((found.acceleration_m_s2 / 10.0 - 1.0).abs() < 3e-3, "{found:?}");
+        assert!((found.pseudo_acceleration_m_s2 / 10.0 - 1.0).abs() < 3e-3, "{found:?}");
     }
 }

@@ -44,7 +44,10 @@ impl Check<'_> {
                 self.numbers(&format!("{path}.pressure_pa"), &[*pressure_pa]);
                 self.numbers(&format!("{path}.at_m"), at_m);
                 self.numbers(&format!("{path}.gradient_pa_m"), gradient_pa_m);
-                if *gradient_pa_m == [0.0; 3] {
+                if *gradient_pa_m == [0.0; 3] && *pressure_pa < 0.0 {
+                    let message = format!("{pressure_pa} Pa everywhere: must not be negative");
+                    self.error(format!("{path}.pressure_pa"), message, "water in joints carries no suction");
+                } else if *gradient_pa_m == [0.0; 3] {
                     self.small(format!("{path}.pressure_pa"), (*pressure_pa, "Pa"), LEAST_PA, UNIT);
                 }
             }

@@ -91,9 +91,7 @@ impl Simulation {
         for &index in shapes {
             let failed = |source| StepError::Factor { step_s: self.part_s, source };
             let (shape, solver) = (&mut self.problem.shapes[index], self.problem.solver.as_ref());
-            shape.factor = None;
-            shape.factor = shape.factored(&self.weights, solver).map_err(failed)?;
-            shape.filter = shape.factored_filter(&self.weights, solver).map_err(failed)?;
+            shape.refactor(&self.weights, solver).map_err(failed)?;
             if let Some(control) = &mut self.control {
                 control.forget_factors(index);
             }
