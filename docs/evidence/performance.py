@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Writes the tables of docs/verification/performance.md from what is kept of measurements.
 
-  docs/evidence/performance.py                             from docs/evidence/{performance,scale}/*.csv and benches/figures.json
+  docs/evidence/performance.py                             from docs/evidence/{performance,runs,scale}/*.csv and benches/figures.json
   docs/evidence/performance.py --measure limits ranks      runs these benches of the workspace first, and keeps what they print
   docs/evidence/performance.py --check                     fails where the page does not say what is kept
 
@@ -20,6 +20,7 @@ ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs" / "verification" / "performance.md"
 KEPT = ROOT / "docs" / "evidence" / "performance"
 sys.path.insert(0, str(ROOT / "benches"))
+import runs
 import scale
 import track
 
@@ -75,6 +76,14 @@ def of_scale():
     return f"{sizes}\n\nExponents over size, of the line through all sizes:\n\n{slopes}\n\nOn {machines}."
 
 
+def of_runs(name, columns, header):
+    """Rows of runs, and what they were measured on."""
+    rows = [row for row in runs.rows() if row["table"] == name]
+    machines = "; ".join(dict.fromkeys(f"{row['processor']}, at {row['commit']}" for row in rows))
+    cells = [[f"`{row[column]}`" if column in ("scene", "settings") and row[column] else row[column] or "–" for column in columns] for row in rows]
+    return f"{table(header, cells)}\n\nOn {machines}."
+
+
 def of_track():
     """The last counts of each crate."""
     records, parts = track.load(), []
@@ -91,7 +100,18 @@ def written(text):
     for name in ("machine", "kernel", "solve", "step"):
         text = between(text, name, of_bench("limits", name))
     text = between(text, "ranks", of_bench("ranks", "ranks"))
+    columns = ["what", "scene", "settings", "blocks", "rest", "steps", "processor_s", "memory_mb", "label"]
+    header = ["job", "scene", "set", "blocks", "steps to rest", "steps of time", "processor [s]", "memory [MB]", "label"]
+    text = between(text, "jobs", of_runs("jobs", columns, header))
+    columns = ["what", "processor_s", "gained", "deepest"]
+    header = ["step, penalty, cubes", "processor [s]", "energy gained, 14 rows", "deepest, over a tetrahedron's height"]
+    text = between(text, "pile", of_runs("pile", columns, header))
     return between(between(text, "scale", of_scale()), "track", of_track())
+
+
+def write():
+    """Writes the page's tables anew."""
+    PAGE.write_text(written(PAGE.read_text(encoding="utf-8")), encoding="utf-8")
 
 
 def main():

@@ -37,9 +37,10 @@ pub(crate) struct Hops {
     /// Flights after a touch in which friction acted and could stop the block, and the largest speed at which one ended [m/s].
     stopped: u32,
     stopped_m_s: f64,
-    /// Length of this touch [s], and what contact has added to the velocity of the block in it [m/s].
+    /// Length of this touch [s], and what contact and loads have added to the velocity of the block in it [m/s].
     touch_s: f64,
     push_m_s: Vec3,
+    load_m_s: Vec3,
     /// Flights that were hardly longer than the touch before, in which friction acted and could stop the block.
     short: u32,
     /// Speed of the fastest node when one of these ended, the largest [m/s].
@@ -49,7 +50,7 @@ pub(crate) struct Hops {
     /// Flights that were hardly longer than the touch before, in which friction acted, of a block that slides slowly, and the speed of the fastest.
     rubbing: u32,
     rubbing_m_s: f64,
-    /// The largest pushes of touches that a flight has ended, the largest first [m/s].
+    /// What contact added to the velocity of the block beyond what loads did, in touches that a flight has ended, the largest first [m/s].
     impacts_m_s: [f64; SEVERAL],
 }
 
@@ -62,6 +63,7 @@ impl Hops {
             }
             self.touch_s += dt_s;
             self.push_m_s += dt_s * (drive.shift_m_s2 - drive.load_m_s2);
+            self.load_m_s += dt_s * drive.load_m_s2;
             self.rubbed |= drive.has_friction;
         } else {
             if self.touched {
@@ -73,10 +75,13 @@ impl Hops {
     }
 
     fn lift_off(&mut self) {
-        let mut push_m_s = self.push_m_s.norm();
-        for impact_m_s in &mut self.impacts_m_s {
-            if push_m_s > *impact_m_s {
-                std::mem::swap(&mut push_m_s, impact_m_s);
+        // Of a block that lies or slides, contact bears no more than its loads against it.
+        let push_m_s = self.push_m_s.norm();
+        let borne_m_s = -self.load_m_s.dot(&self.push_m_s) / push_m_s.max(f64::MIN_POSITIVE);
+        let mut impact_m_s = push_m_s - borne_m_s.max(0.0);
+        for larger_m_s in &mut self.impacts_m_s {
+            if impact_m_s > *larger_m_s {
+                std::mem::swap(&mut impact_m_s, larger_m_s);
             }
         }
     }
@@ -103,7 +108,7 @@ impl Hops {
             self.rubbing_m_s = self.rubbing_m_s.max(speed_m_s);
         }
         (self.last_flight_s, self.flight_s, self.rubbed) = (self.flight_s, 0.0, false);
-        (self.touch_s, self.push_m_s) = (0.0, Vec3::zeros());
+        (self.touch_s, self.push_m_s, self.load_m_s) = (0.0, Vec3::zeros(), Vec3::zeros());
     }
 
     /// Most flights in a row that were each longer than the one before, friction acting in between.
@@ -121,7 +126,8 @@ impl Hops {
         }
     }
 
-    /// What contact added to the velocity of the block in the third largest of its impacts, after each of which it flew on \[m/s\]; 0 where there were fewer.
+    /// What contact added to the velocity of the block, beyond what its loads did, in the third largest of its impacts, after each of which it flew on
+    /// \[m/s\]; 0 where there were fewer.
     pub(crate) fn third_impact_m_s(&self) -> f64 {
         self.impacts_m_s[SEVERAL - 1]
     }
@@ -201,9 +207,16 @@ mod tests {
             touch(&mut hops, push_m_s2);
             hops.add(1e-3, &RigidForcing::default());
         }
-        // The fifth touch lasts.
+        // The fifth touch goes on, and one in which contact bears the load is no impact.
         touch(&mut hops, 9000.0);
         assert!((hops.third_impact_m_s() - 2.0).abs() < 1e-12, "{}", hops.third_impact_m_s());
+        let mut lying = Hops::default();
+        let load_m_s2 = -500.0 * Vec3::z();
+        for _ in 0..4 {
+            lying.add(1e-3, &RigidForcing { touches: true, load_m_s2, ..RigidForcing::default() });
+            lying.add(1e-3, &RigidForcing::default());
+        }
+        assert_eq!(lying.third_impact_m_s(), 0.0);
     }
 
     #[test]

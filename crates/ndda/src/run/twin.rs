@@ -68,7 +68,7 @@ const ENOUGH: usize = 3;
 /// So many hops of one block, with friction in between, make small differences grow.
 const HOPS: f64 = 8.0;
 /// Part of the largest speed that contact adds to the velocity of a block in its third largest impact, from which on a shorter step is tried.
-const IMPACT: f64 = 0.1;
+const IMPACT: f64 = 0.05;
 
 /// Whether a run that begins here makes a twin, by default, if its blocks move far enough.
 pub(crate) fn may_want_twin(simulation: &Simulation) -> bool {
