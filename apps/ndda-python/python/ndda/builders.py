@@ -2618,7 +2618,8 @@ class Record(Builder):
     column : str, optional
         Column of accelerations of a CSV file. Default: `acceleration_m_s2`.
     unit : AccelerationUnitChoice, optional
-        Unit of the accelerations. Default: that which an `.at2` file names, m/s² for CSV.
+        Unit of the accelerations. Default: that which an `.at2` file names, or in which the name of the
+        column ends (`_m_s2`, `_cm_s2`, `_gal`, `_g`), or m/s².
     factor : float, optional
         Factor on the accelerations; a negative one turns them round. Default: 1.
     filter_hz : Sequence[float], optional
