@@ -21,7 +21,7 @@ use std::path::Path;
 use ndda_io::diagnostic::{Diagnostic, SceneErrors};
 use ndda_io::read::Chosen;
 use ndda_io::read::{self, LoadedScene};
-use ndda_io::scene::{Contact, ContactAt, FactorRow, Integrator, Potential, Scene, Stress, is_unset};
+use ndda_io::scene::{Contact, ContactAt, FactorRow, Integrator, Scene, Stress, is_unset};
 use ndda_mesh::geometry::{Aabb, tet_volume, triangle_area_vector};
 use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
 
@@ -262,9 +262,7 @@ pub(crate) fn resting(scene: &Scene, blocks: &BlockSet) -> Option<Resting> {
     let Some(Contact::Potential { penalty_pa, potential, depth_ratio, .. }) = &scene.contact else {
         return None;
     };
-    let (Potential::Smooth { reference_m } | Potential::Closure { reference_m, .. }) = potential else {
-        return None;
-    };
+    let reference_m = potential.reference_m()?;
     let sizes = Sizes::new(scene, blocks);
     let overlap = reference_m * sizes.rest_pa() / (2.0 * penalty_pa * sizes.block_m);
     let penalty_pa = rounded_up(penalty_pa * overlap / depth_ratio);
@@ -281,10 +279,7 @@ fn penalty(scene: &mut Scene, sizes: &Sizes) -> Option<Chosen> {
     if !is_unset(penalty_pa) {
         return None;
     }
-    let length_m = match potential {
-        Potential::Smooth { reference_m } | Potential::Closure { reference_m, .. } => *reference_m,
-        Potential::Element | Potential::Volume { .. } => 0.25 * sizes.height_m,
-    };
+    let length_m = potential.reference_m().unwrap_or(0.25 * sizes.height_m);
     if sizes.young_pa == 0.0 {
         *penalty_pa = rounded_up(OF_YOUNG * of_all);
         let reason = format!("{NOTHING_MOVES}; {OF_YOUNG:e} of Young's modulus");

@@ -85,6 +85,16 @@ pub enum Potential {
     },
 }
 
+impl Potential {
+    /// L₀ [m], of which joints have 2 k_n/L₀ of stiffness per area; none where their stiffness depends on the mesh or on the overlap.
+    pub fn reference_m(&self) -> Option<f64> {
+        match *self {
+            Self::Smooth { reference_m } | Self::Closure { reference_m, .. } => Some(reference_m),
+            Self::Element | Self::Volume { .. } => None,
+        }
+    }
+}
+
 /// Friction of a joint. Without `shear_penalty_pa_m` it acts on velocities: at once when blocks slide, and without any
 /// displacement while they stick. With it, shear is a spring (the paper's eqs (17)–(19)), and may hold together.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -130,14 +130,11 @@ fn law(scene: &Scene, rock: &Rock) -> Option<Box<dyn FrictionLaw>> {
 /// Stiffness of closed joints; none where it depends on the area of contact.
 fn pressed_pa_m(scene: &Scene, blocks: &BlockSet) -> Option<f64> {
     let Some(Contact::Potential { penalty_pa, potential, .. }) = &scene.contact else { return None };
-    match *potential {
-        Potential::Smooth { reference_m } | Potential::Closure { reference_m, .. } => {
-            Some(2.0 * penalty_pa / reference_m)
-        }
+    match potential {
         Potential::Element => {
             Some(contact_stiffness_pa_m(&surfaces_of(TETRAHEDRA, blocks), *penalty_pa, blocks))
         }
-        Potential::Volume { .. } => None,
+        _ => Some(2.0 * penalty_pa / potential.reference_m()?),
     }
 }
 

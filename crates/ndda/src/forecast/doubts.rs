@@ -104,13 +104,7 @@ pub fn has_friction(scene: &Scene) -> bool {
 
 /// Whether contact is far too soft or too hard for the rock of blocks that move.
 fn penalty(scene: &Scene, simulation: &Simulation, penalty_pa: f64, potential: &Potential) -> Option<String> {
-    let per_metre_pa = match potential {
-        Potential::Smooth { reference_m } | Potential::Closure { reference_m, .. } => {
-            penalty_pa / reference_m
-        }
-        // The stiffness of these depends on the mesh and on the overlap.
-        Potential::Element | Potential::Volume { .. } => return None,
-    };
+    let per_metre_pa = penalty_pa / potential.reference_m()?;
     let deforms = simulation.blocks().ids().any(|block| simulation.shape(block).kind != BodyKind::Fixed);
     let stiffest_pa = scene.materials.iter().map(|material: &Material| material.young_pa).fold(0.0, f64::max);
     let ratio = per_metre_pa / stiffest_pa;

@@ -3,7 +3,7 @@
 //! Under a stress σ a joint closes by σ L/(2 k_n), while a block of size s that loses the stress grows by σ s/E. Between a joint and the next, what is left of σ₀ is
 //! σ₀ (s/E)/(s/E + L/(2 k_n)). Of blocks of unlike sides the least counts, along which there are most joints.
 
-use ndda_io::scene::{Contact, Potential, Scene};
+use ndda_io::scene::{Contact, Scene};
 use ndda_mesh::geometry::Aabb;
 use ndda_solver::{BodyKind, Simulation};
 
@@ -25,10 +25,7 @@ pub(super) fn finding(scene: &Scene, simulation: &Simulation) -> Option<String> 
         return Some("in_situ acts on nothing, since no block of the scene can deform: make blocks Elastic or Affine, or leave it out".into());
     };
     let Some(Contact::Potential { penalty_pa, potential, .. }) = &scene.contact else { return None };
-    let reference_m = match potential {
-        Potential::Smooth { reference_m } | Potential::Closure { reference_m, .. } => *reference_m,
-        Potential::Element | Potential::Volume { .. } => return None,
-    };
+    let reference_m = potential.reference_m()?;
     if blocks.len() < 2 {
         return None;
     }
