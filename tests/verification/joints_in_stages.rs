@@ -57,6 +57,29 @@ fn cohesion_that_a_stage_gives_to_a_joint_holds_a_push_with_softening_or_without
     }
 }
 
+/// A bond that a stage makes stiffer carries what it did: nothing draws the block back, and the next push stretches it by 1/k of what is added.
+#[test]
+fn a_block_stays_where_it_is_when_a_stage_makes_its_bonds_stiffer() {
+    let law = |shear_pa_m: f64| {
+        format!("friction_deg: 30, shear_penalty_pa_m: {shear_pa_m:e}, cohesion_pa: 40e3, tension_pa: 40e3")
+    };
+    let push = |force_n: f64| {
+        format!(
+            "(name: \"push {force_n}\", forces: [(block: \"b\", at_m: (1, 1, 0), force_n: ({force_n:e}, 0, 0))], over_s: 0.1, then: Settle())"
+        )
+    };
+    let stiffer =
+        format!("(name: \"stiffer\", laws: (friction: ({})), over_s: 0.1, then: Settle())", law(4e9));
+    let [first_m, _, _] = moved_m(&run(&law(1e9), &push(80e3), ""));
+    let [then_m, _, _] = moved_m(&run(&law(1e9), &format!("{}, {stiffer}", push(80e3)), ""));
+    row(
+        "joints in stages",
+        "slip of a block whose bonds a stage makes four times as stiff, over that before",
+        then_m / first_m,
+        Within(1.0, 0.01),
+    );
+}
+
 /// A joint that has opened by tan 10° of its slip stays open where a stage leaves less dilation, or none.
 #[test]
 fn a_joint_that_has_opened_by_slip_stays_open_where_a_stage_changes_its_dilation() {

@@ -49,13 +49,19 @@ pub trait ContactModel: ContactAudit + Send + Sync {
         false
     }
 
-    /// Whether a facet holds to a block that it touches when contact begins.
-    fn holds_together(&self, _blocks: &BlockSet, _facet: TriangleId, _target: BlockId) -> bool {
-        false
+    /// Stiffness across and along the normal by which a facet holds to a block that it touches when contact begins \[Pa/m\]; none where it does not.
+    fn bond_stiffness_pa_m(
+        &self,
+        _blocks: &BlockSet,
+        _facet: TriangleId,
+        _target: BlockId,
+    ) -> Option<[f64; 2]> {
+        None
     }
 
     /// Takes over the history of another model, whose laws were others: laws that keep other numbers of a facet begin anew, what touches now and holds together
-    /// under these laws alone does so from now on, and what carries more than its strength breaks.
+    /// under these laws alone does so from now on, what holds together more stiffly or more softly than before carries what it did, and what carries more than
+    /// its strength breaks.
     ///
     /// # Errors
     /// As [`add_forces`](Self::add_forces).

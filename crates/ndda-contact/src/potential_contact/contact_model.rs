@@ -203,9 +203,9 @@ impl ContactModel for PotentialContact {
         true
     }
 
-    fn holds_together(&self, blocks: &BlockSet, facet: TriangleId, target: BlockId) -> bool {
-        let law = self.joints.as_ref().and_then(|joints| joints.law(blocks, facet, target));
-        law.is_some_and(|law| law.holds_together())
+    fn bond_stiffness_pa_m(&self, blocks: &BlockSet, facet: TriangleId, target: BlockId) -> Option<[f64; 2]> {
+        let law = self.joints.as_ref()?.law(blocks, facet, target).filter(|law| law.holds_together())?;
+        Some([law.shear_stiffness_pa_m(), law.bond_stiffness_pa_m()])
     }
 
     fn take_over(
@@ -216,6 +216,7 @@ impl ContactModel for PotentialContact {
     ) -> Result<(), ContactError> {
         history.begin_laws(self.joints.as_ref().map_or(0, FrictionLawTable::state_len));
         if history.begun {
+            self.keep_forces(input, before, history);
             self.bond_more(input, before, history)?;
             self.break_quietly(input, history)?;
         }

@@ -4,12 +4,38 @@ use crate::contact_model::ContactModel;
 use crate::friction::bonds_of_facet::key;
 use crate::friction::law_table::FrictionLawTable;
 use crate::friction::openings::Moment;
+use crate::friction::stretch::{Stretch, frame_of};
 use crate::friction::{bond, bond_formation};
 use crate::model::{ContactError, ContactHistory, ContactInput};
 
 use super::PotentialContact;
 
 impl PotentialContact {
+    /// Moves the points that bonds hold to so that they carry what they did: k s does not change, where k does.
+    pub(super) fn keep_forces(
+        &self,
+        input: &ContactInput,
+        before: &dyn ContactModel,
+        history: &mut ContactHistory,
+    ) {
+        let blocks = input.blocks;
+        for bond in history.bonds.iter_mut().filter(|bond| bond.damage < 1.0) {
+            let of = |model: &dyn ContactModel| {
+                model.bond_stiffness_pa_m(blocks, bond.facet, blocks.tet_block[bond.tet.index()])
+            };
+            let (Some(old), Some(new)) = (of(before), of(self)) else { continue };
+            if old == new {
+                continue;
+            }
+            let mut stretch = Stretch::of(input, bond);
+            stretch.offset_m *= old[0] / new[0];
+            if stretch.opening_m > 0.0 {
+                stretch.opening_m *= old[1] / new[1];
+            }
+            bond.lambda = frame_of(bond.tet, input).lambda_at(&stretch.anchor());
+        }
+    }
+
     /// Forms bonds where blocks touch now that hold together under these laws, and did not under those of before.
     pub(super) fn bond_more(
         &mut self,
@@ -24,7 +50,9 @@ impl PotentialContact {
         let Some(joints) = &self.joints else { return Ok(()) };
         let (blocks, mut bonds) = (input.blocks, Vec::new());
         bond_formation::form(joints, (&self.candidates, &self.hulls), input, &mut bonds);
-        bonds.retain(|bond| !before.holds_together(blocks, bond.facet, blocks.tet_block[bond.tet.index()]));
+        bonds.retain(|bond| {
+            before.bond_stiffness_pa_m(blocks, bond.facet, blocks.tet_block[bond.tet.index()]).is_none()
+        });
         if !bonds.is_empty() {
             history.bonds.append(&mut bonds);
             history.bonds.sort_by_key(|bond| key(blocks, joints.memory, bond));
