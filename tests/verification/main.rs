@@ -66,6 +66,7 @@ mod quiet_oblique;
 mod random_impacts;
 mod random_wedges;
 mod release_of_initial_stress;
+mod repeated_impacts;
 mod restitution;
 mod rockfall;
 mod rocking_block;

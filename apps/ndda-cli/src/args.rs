@@ -303,8 +303,8 @@ pub struct HowArgs {
     /// Exit with code 1 when a run is labelled inaccurate or sensitive, or a check is beyond its limit.
     #[arg(long)]
     pub strict: bool,
-    /// After an accurate run, run the scene again, from a slightly different start or with a shorter step, to see whether small differences grow: auto (where
-    /// three or more blocks move, or one hops or hits several times), always or never. Each such run takes as long as the first, or a quarter longer.
+    /// After an accurate run, run the scene again, from a slightly different start or with half the step, to see whether the result changes: auto (where
+    /// several blocks move, or one hops or hits several times), always or never. It takes as long as the first run, or twice as long.
     #[arg(long, value_name = "WHEN", default_value = "auto")]
     pub sensitivity: Sensitivity,
     /// Print nothing but errors.

@@ -50,7 +50,7 @@ fn what_is_no_record_is_refused_with_its_cure() {
         (vec!["no.at2"], "cannot be read"),
         (vec!["table.csv"], "there is no column `acceleration_m_s2`; the first line names time_s, ax, ay"),
         (vec!["pulse.at2", "--column", "ax"], "an .at2 file has no columns: leave `column` out"),
-        (vec!["table.csv"], ": set `column` to the one that holds accelerations"),
+        (vec!["table.csv"], ": set `column` (--column) to the one that holds accelerations"),
         (vec!["table.csv", "--column", "ax", "--filter", "5,1"], "the lower one first"),
         (vec!["table.csv", "--column", "ax", "--resample", "5"], "would make 1 rows"),
         (

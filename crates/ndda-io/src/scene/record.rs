@@ -156,6 +156,10 @@ impl Record {
         let gap = Gap::longest_in(&rows);
         let (count, end_s) = (rows.len(), rows[rows.len() - 1].0);
         let mut told = format!("{}: {count} rows to {end_s:.6} s", file.display());
+        if self.unit.is_none() && named.is_none() {
+            told += ", read in m/s², since neither the file nor the name of the column gives a unit: set `unit` to G, MetrePerSecondSquared or \
+                     CentimetrePerSecondSquared (--unit g, m/s2 or cm/s2)";
+        }
         if let Some(named) = named.filter(|named| *named != unit) {
             told += &format!(
                 ", read in {} and not in {}, the unit that the file names",
@@ -208,7 +212,7 @@ fn raw(file: &Path, column: Option<&str>) -> Result<(Rows, Option<AccelerationUn
         }
         return at2::parse(file, &String::from_utf8_lossy(&bytes));
     }
-    let cure = "set `column` to the one that holds accelerations";
+    let cure = "set `column` (--column) to the one that holds accelerations";
     let column = column.unwrap_or(ACCELERATION);
     Ok((csv(file, &bytes, column, cure)?, AccelerationUnit::named_by(column)))
 }

@@ -51,8 +51,8 @@ pub struct Invariants {
     pub chattering_hops: Worst,
     /// Hops of a block with friction between them that could stop it: small differences grow from hop to hop.
     pub hops_with_friction: Worst,
-    /// What contact added to the velocity of a block in the third largest of its impacts, over the largest speed: errors of impacts grow in the next ones.
-    pub third_impact: Worst,
+    /// What contact added to the velocity of a block in the second largest of its impacts, over the largest speed: errors of impacts grow in the next ones.
+    pub second_impact: Worst,
     /// Speed that a sliding block gained while its contact rebounded, over the largest speed.
     pub rebound_speed: Worst,
     /// Speed that a block which deforms gained while its contact rebounded, found from the impulse of contact, over the largest speed; holds on one plane only.

@@ -72,7 +72,7 @@ pub fn ending(summary: &Summary) -> String {
     ));
     if let Some(second_s) = second_run_s(summary) {
         text.push_str(&format!(
-            ", and {second_s:.2} s for the second run, which shows whether small differences grow"
+            ", and {second_s:.2} s for running the scene again (`--sensitivity never` leaves that out)"
         ));
     }
     text.push('\n');

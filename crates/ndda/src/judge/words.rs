@@ -6,7 +6,7 @@ pub const SECOND_RUN: &str = "sensitivity";
 /// Key, and what a table says instead.
 const WORDS: [(&str, &str); 9] = [
     ("ledger", "energy balance"),
-    (SECOND_RUN, "second run (sensitivity)"),
+    (SECOND_RUN, "running again (sensitivity)"),
     ("setup", "reading and building"),
     ("finite state", "all numbers finite"),
     ("lasting energy error", "energy gained or lost for good"),

@@ -102,7 +102,8 @@ fn text(outcome: &Outcome) -> String {
     }
     let accuracy = &outcome.accuracy;
     if accuracy.inaccurate > 0 {
-        let _ = writeln!(text, "note: {} of {count} falls are inaccurate:", accuracy.inaccurate);
+        let is = if accuracy.inaccurate == 1 { "is" } else { "are" };
+        let _ = writeln!(text, "note: {} of {count} falls {is} inaccurate:", accuracy.inaccurate);
         for reason in &accuracy.reasons {
             let _ = writeln!(text, "  {reason}");
         }

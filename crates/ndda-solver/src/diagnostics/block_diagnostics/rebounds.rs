@@ -35,9 +35,9 @@ impl BlockDiagnostics {
         worst
     }
 
-    /// Largest third impact of a block, over the largest speed; what rounding may have done does not count.
-    pub(crate) fn third_impact(&self, speed_m_s: f64, rounding_j: f64) -> Worst {
-        self.worst_speed(speed_m_s, rounding_j, |balance| balance.hops.third_impact_m_s())
+    /// Largest second impact of a block, over the largest speed; what rounding may have done does not count.
+    pub(crate) fn second_impact(&self, speed_m_s: f64, rounding_j: f64) -> Worst {
+        self.worst_speed(speed_m_s, rounding_j, |balance| balance.hops.second_impact_m_s())
     }
 
     /// Largest speed that rebounds of contact have added to a block, over a speed: from the line of its speed, and from its impulse, which holds on one plane only. What

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use ndda_fem::block_operator::RigidMotion;
 use ndda_mesh::geometry::tet_heights;
 use ndda_mesh::{BlockId, TetId, Vec3};
 use ndda_solver::Simulation;
@@ -10,10 +11,13 @@ use super::{Twin, hops};
 use crate::numbers::{counted, length};
 use crate::summary::LabelWord;
 
-/// Blocks of the twin may end this part of a tetrahedron's height away: a third of what an accurate label allows.
-const AWAY: f64 = 0.03;
-/// Velocities of the twin may differ by this part of the largest speed, as in an accurate label.
-const FASTER: f64 = 0.01;
+/// Parts of a tetrahedron's height by which blocks of a twin may end away, and of the largest speed by which their velocities may differ: of one that
+/// is pushed, a third of what an accurate label allows, and all of it.
+const OF_PUSH: (f64, f64) = (0.03, 0.01);
+/// Of one with half the step, which has half of the errors where friction acts in impacts, and a quarter elsewhere: half of what the label allows.
+const OF_STEP: (f64, f64) = (0.05, 0.005);
+/// The most by which the label advises to divide a step.
+const MOST: f64 = 64.0;
 
 /// Where a run and its twin part.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,8 +30,9 @@ pub(crate) struct Parted {
     apart_m: f64,
     /// By how much its velocity or that of its rotation differs [m/s], where that is what is too much.
     faster_m_s: Option<f64>,
-    /// How many blocks differ more than allowed.
+    /// How many blocks differ more than allowed, and the worst by how many times that.
     blocks: usize,
+    times: f64,
     /// Whether a block hopped many times with friction in between.
     hops: bool,
 }
@@ -53,7 +58,8 @@ impl fmt::Display for Parted {
         let Twin::Push(_) = self.twin else {
             return write!(
                 f,
-                "a run with a step shorter by a fifth ends {ends}, since errors of impacts grow in later ones: {many}, `{block}` by {by}; divide step_s by 2"
+                "a run with half the step ends {ends}, since errors of impacts grow in later ones: {many}, `{block}` by {by}; divide step_s by {}",
+                self.times.ceil().clamp(2.0, MOST)
             );
         };
         write!(
@@ -80,11 +86,15 @@ pub(super) fn parted(
     drift_m: f64,
 ) -> Option<Parted> {
     let (state, largest_m_s) = (simulation.state(), simulation.speed_scale_m_s());
+    let (away, faster) = match twin {
+        Twin::Push(_) => OF_PUSH,
+        Twin::Step(_) => OF_STEP,
+    };
     let differs = |block: BlockId| {
         let apart_m = farthest_m(simulation, block, &state.position, &ended.0);
         let faster_m_s = faster_m_s(simulation, block, (&state.position, &state.velocity), ended);
-        let place = apart_m / (AWAY * height_m(simulation, block) + drift_m);
-        let speed = if apart_m > drift_m { faster_m_s / (FASTER * largest_m_s) } else { 0.0 };
+        let place = apart_m / (away * height_m(simulation, block) + drift_m);
+        let speed = if apart_m > drift_m { faster_m_s / (faster * largest_m_s) } else { 0.0 };
         Difference { block, apart_m, faster_m_s, place, speed }
     };
     let all: Vec<Difference> = simulation.blocks().ids().map(differs).collect();
@@ -98,6 +108,7 @@ pub(super) fn parted(
         apart_m: worst.apart_m,
         faster_m_s: (!is_elsewhere).then_some(worst.faster_m_s),
         blocks: all.iter().filter(|one| over(one) > 1.0).count(),
+        times: over(worst),
         hops: hops(simulation),
     })
 }
@@ -113,7 +124,8 @@ struct Difference {
     speed: f64,
 }
 
-/// By how much the velocity of a block differs, or its spin times the distance of its farthest node from the middle, if that is more [m/s]; vibrations do not count.
+/// By how much the velocity of a block differs, or its spin times the distance of its farthest node from the middle, if that is more [m/s]. Spins are those of a
+/// block of the run's present shape with the angular momenta of both: vibrations change shapes.
 fn faster_m_s(
     simulation: &Simulation,
     block: BlockId,
@@ -125,7 +137,10 @@ fn faster_m_s(
     let run = operator.rigid_motion(own, &velocity[nodes.clone()]);
     let twin = operator.rigid_motion(&ended.0[nodes.clone()], &ended.1[nodes]);
     let reach_m = own.iter().map(|x| (x - run.center).norm()).fold(0.0, f64::max);
-    let spin_m_s = reach_m * (run.spin_rad_s - twin.spin_rad_s).norm();
+    let momentum = |motion: &RigidMotion| {
+        motion.inverse_inertia.try_inverse().map_or(Vec3::zeros(), |inertia| inertia * motion.spin_rad_s)
+    };
+    let spin_m_s = reach_m * (run.inverse_inertia * (momentum(&run) - momentum(&twin))).norm();
     spin_m_s.max((run.velocity_m_s - twin.velocity_m_s).norm())
 }
 
