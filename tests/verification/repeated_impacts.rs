@@ -72,7 +72,9 @@ fn blocks_that_bounce_down_slopes_are_right_where_their_runs_are_called_accurate
     let (mut without, mut wrong_without, mut with, mut wrong, mut worst) = (0, 0, 0, 0, 0.0f64);
     for seed in 0..cases {
         let mut random = Random(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) + 1);
-        (0..5).for_each(|_| drop(random.unit()));
+        for _ in 0..5 {
+            random.unit();
+        }
         let (text, step_s) = scene(&mut random);
         let alone = run(&text, step_s, Sensitivity::Never);
         if alone.summary.label.word != LabelWord::Accurate {
