@@ -344,7 +344,7 @@ mod tests {
     }
 
     #[test]
-    fn the_time_of_the_second_run_is_said_apart() {
+    fn the_time_of_repeating_a_run_is_said_apart() {
         let text = "(title: \"fall\", contact: Off, time: (step_s: 1e-3, end_s: 0.01), gravity_m_s2: (0, 0, -9.81),
             materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: 2600)],
             blocks: [(name: \"cube\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)))])";
@@ -357,7 +357,7 @@ mod tests {
         );
         summary.stages_s.0.push((SECOND_RUN.into(), 2.0));
         assert!(
-            ending(&summary).contains("in 3.00 s, and 2.00 s for the second run"),
+            ending(&summary).contains("in 3.00 s, and 2.00 s for running the scene again"),
             "{}",
             ending(&summary)
         );
