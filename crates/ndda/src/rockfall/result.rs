@@ -170,14 +170,12 @@ fn warnings(model: &Model, falls: &[Fall]) -> Vec<String> {
         let has_reached = |fall: &Fall| fall.passages.iter().any(|(line, _)| *line == k);
         falls.iter().filter(|fall| fall.end == End::LeftTerrain && !has_reached(fall)).count()
     };
-    let lines = model.rockfall.lines.iter().enumerate();
-    if let Some((left, line)) = lines.map(|(k, line)| (left_before(k), line)).max_by_key(|(left, _)| *left) {
-        if left > 0 {
-            warnings.push(format!(
-                "{left} of {count} boulders left the terrain without reaching line `{}`: draw more terrain; until then probabilities of reach are lower bounds",
-                line.name
-            ));
-        }
+    let lines = model.rockfall.lines.iter().enumerate().map(|(k, line)| (left_before(k), line));
+    if let Some((left, line)) = lines.filter(|(left, _)| *left > 0).max_by_key(|(left, _)| *left) {
+        warnings.push(format!(
+            "{left} of {count} boulders left the terrain without reaching line `{}`: draw more terrain; until then probabilities of reach are lower bounds",
+            line.name
+        ));
     }
     let reason = falls.iter().find_map(|fall| match &fall.end {
         End::Stopped(reason) => Some(reason),
