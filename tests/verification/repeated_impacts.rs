@@ -1,6 +1,6 @@
 //! Blocks that bounce down slopes: what a run with several impacts says of itself, against an eighth of its step.
 //!
-//! `NDDA_CASES=400 cargo test --test verification repeated_impacts -- --nocapture` prints the numbers of docs/verification/stability.md.
+//! `NDDA_CASES=100 cargo test --test verification repeated_impacts -- --nocapture` says how many are right, with and without a repetition.
 
 use ndda::Model;
 use ndda::run::{Outcome, Run, Sensitivity};
