@@ -109,11 +109,6 @@ def written(text):
     return between(between(text, "scale", of_scale()), "track", of_track())
 
 
-def write():
-    """Writes the page's tables anew."""
-    PAGE.write_text(written(PAGE.read_text(encoding="utf-8")), encoding="utf-8")
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--measure", nargs="+", choices=BENCHES, default=[])

@@ -1,10 +1,9 @@
 #!/usr/bin/env python3
 """Whole runs that docs/verification/performance.md tells of: steps, processor time, memory and label.
 
-  docs/evidence/runs.py [NDDA] [--only TEXT] [--beside N]    (default: target/release/ndda, all runs, one at a time)
+  docs/evidence/runs.py [NDDA] [--only TEXT]    (default: target/release/ndda, all runs)
 
-Runs each on one thread, keeps a row of it in docs/evidence/runs/runs.csv, and writes the tables of the page (docs/evidence/performance.py).
-All of them take half an hour of processor time.
+Runs each on one thread and keeps a row of it in docs/evidence/runs/runs.csv; docs/evidence/performance.py writes the tables of the page. All of them take half an hour of processor time.
 """
 
 import argparse
@@ -12,12 +11,14 @@ import csv
 import json
 import re
 import subprocess
+import sys
 import tempfile
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from threading import Lock
 
 ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "benches"))
+import track
+
 KEPT = ROOT / "docs" / "evidence" / "runs" / "runs.csv"
 COLUMNS = ["table", "what", "scene", "settings", "blocks", "steps", "rest", "processor_s", "memory_mb", "gained", "deepest", "label", "processor", "commit"]
 
@@ -58,8 +59,8 @@ def measured(ndda, where, run):
             raise SystemExit(f"{' '.join(command)}: {done.stderr}")
         summary = json.loads(file.read_text(encoding="utf-8"))
         log = Path(folder, "out", "run.log").read_text(encoding="utf-8")
-    said = done.stdout + done.stderr + log
-    rest = list(dict.fromkeys(re.findall(r"settled in (\d+) steps", said))) + re.findall(r"at rest after (\d+) steps? more", done.stdout)
+    # Before time begins by the log, in stages by the table.
+    rest = re.findall(r"\] settled in (\d+) steps", log) + re.findall(r"at rest after (\d+) steps? more", done.stdout)
     machine, invariants = summary["machine"], summary["invariants"]
     return {
         "table": table,
@@ -87,38 +88,26 @@ def rows():
     return [kept[run[:2]] for run in RUNS if run[:2] in kept]
 
 
-def keep(row, lock):
+def keep(row):
     """Puts a row in the place of an older one."""
-    with lock:
-        kept = {(old["table"], old["what"]): old for old in rows()} | {(row["table"], row["what"]): row}
-        KEPT.parent.mkdir(parents=True, exist_ok=True)
-        with KEPT.open("w", newline="", encoding="utf-8") as file:
-            writer = csv.DictWriter(file, COLUMNS)
-            writer.writeheader()
-            writer.writerows(kept[run[:2]] for run in RUNS if run[:2] in kept)
+    kept = {(old["table"], old["what"]): old for old in rows()} | {(row["table"], row["what"]): row}
+    KEPT.parent.mkdir(parents=True, exist_ok=True)
+    with KEPT.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, COLUMNS)
+        writer.writeheader()
+        writer.writerows(kept[run[:2]] for run in RUNS if run[:2] in kept)
 
 
 def main():
-    import performance
-    import track
-
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("ndda", nargs="?", default=str(ROOT / "target" / "release" / "ndda"))
     parser.add_argument("--only", default="", metavar="TEXT")
-    parser.add_argument("--beside", type=int, default=1, metavar="N")
     options = parser.parse_args()
     where = {"processor": track.processor(), "commit": track.commit(ROOT)}
-    wanted = [run for run in RUNS if options.only in " ".join(run[:3])]
-    lock = Lock()
-
-    def work(run):
+    for run in (run for run in RUNS if options.only in " ".join(run[:3])):
         row = measured(options.ndda, where, run)
-        keep(row, lock)
+        keep(row)
         print(row["what"], row["processor_s"], "s", flush=True)
-
-    with ThreadPoolExecutor(options.beside) as pool:
-        list(pool.map(work, wanted))
-    performance.write()
 
 
 if __name__ == "__main__":

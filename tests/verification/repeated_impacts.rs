@@ -13,7 +13,7 @@ use ndda_solver::Simulation;
 use crate::evidence::Answer::AtMost;
 use crate::evidence::row;
 
-/// What an accurate label promises, over the largest speed.
+/// Largest error of a velocity that the label `accurate` allows, over the largest speed.
 const PROMISE: f64 = 0.01;
 
 /// A turned block that is thrown on a slope.

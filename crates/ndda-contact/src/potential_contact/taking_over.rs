@@ -1,12 +1,14 @@
 //! History that goes on under other laws.
 
+use ndda_mesh::BlockSet;
+
 use crate::contact_model::ContactModel;
 use crate::friction::bonds_of_facet::key;
 use crate::friction::law_table::FrictionLawTable;
 use crate::friction::openings::Moment;
 use crate::friction::stretch::{Stretch, frame_of};
 use crate::friction::{bond, bond_formation};
-use crate::model::{ContactError, ContactHistory, ContactInput};
+use crate::model::{Bond, ContactError, ContactHistory, ContactInput};
 
 use super::PotentialContact;
 
@@ -20,10 +22,11 @@ impl PotentialContact {
     ) {
         let blocks = input.blocks;
         for bond in history.bonds.iter_mut().filter(|bond| bond.damage < 1.0) {
-            let of = |model: &dyn ContactModel| {
-                model.bond_stiffness_pa_m(blocks, bond.facet, blocks.tet_block[bond.tet.index()])
+            let (Some(old), Some(new)) =
+                (stiffness_of(bond, before, blocks), stiffness_of(bond, self, blocks))
+            else {
+                continue;
             };
-            let (Some(old), Some(new)) = (of(before), of(self)) else { continue };
             if old == new {
                 continue;
             }
@@ -50,9 +53,7 @@ impl PotentialContact {
         let Some(joints) = &self.joints else { return Ok(()) };
         let (blocks, mut bonds) = (input.blocks, Vec::new());
         bond_formation::form(joints, (&self.candidates, &self.hulls), input, &mut bonds);
-        bonds.retain(|bond| {
-            before.bond_stiffness_pa_m(blocks, bond.facet, blocks.tet_block[bond.tet.index()]).is_none()
-        });
+        bonds.retain(|bond| stiffness_of(bond, before, blocks).is_none());
         if !bonds.is_empty() {
             history.bonds.append(&mut bonds);
             history.bonds.sort_by_key(|bond| key(blocks, joints.memory, bond));
@@ -78,4 +79,9 @@ impl PotentialContact {
         }
         Ok(())
     }
+}
+
+/// Stiffness of a bond under the laws of a model, across and along the normal [Pa/m]; none where they hold nothing together.
+fn stiffness_of(bond: &Bond, model: &dyn ContactModel, blocks: &BlockSet) -> Option<[f64; 2]> {
+    model.bond_stiffness_pa_m(blocks, bond.facet, blocks.tet_block[bond.tet.index()])
 }

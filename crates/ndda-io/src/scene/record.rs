@@ -162,7 +162,7 @@ impl Record {
         }
         if let Some(named) = named.filter(|named| *named != unit) {
             told += &format!(
-                ", read in {} and not in {}, the unit that the file names",
+                ", read in {} and not in {}, the unit that the file or its column names",
                 unit.symbol(),
                 named.symbol()
             );

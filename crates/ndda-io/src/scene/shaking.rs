@@ -56,16 +56,22 @@ impl AccelerationUnit {
 
     /// The unit that the name of a column ends in, as in `acceleration_m_s2`, `ew_cm_s2`, `ns_gal` and `a_g`.
     pub(crate) fn named_by(column: &str) -> Option<Self> {
+        const ENDINGS: [(&str, AccelerationUnit); 12] = [
+            ("_cm_s2", AccelerationUnit::CentimetrePerSecondSquared),
+            ("(cm/s2)", AccelerationUnit::CentimetrePerSecondSquared),
+            ("[cm/s2]", AccelerationUnit::CentimetrePerSecondSquared),
+            ("_gal", AccelerationUnit::CentimetrePerSecondSquared),
+            ("(gal)", AccelerationUnit::CentimetrePerSecondSquared),
+            ("[gal]", AccelerationUnit::CentimetrePerSecondSquared),
+            ("_m_s2", AccelerationUnit::MetrePerSecondSquared),
+            ("(m/s2)", AccelerationUnit::MetrePerSecondSquared),
+            ("[m/s2]", AccelerationUnit::MetrePerSecondSquared),
+            ("_g", AccelerationUnit::G),
+            ("(g)", AccelerationUnit::G),
+            ("[g]", AccelerationUnit::G),
+        ];
         let column = column.to_lowercase();
-        let ends = |endings: &[&str]| endings.iter().any(|ending| column.ends_with(ending));
-        match () {
-            () if ends(&["_cm_s2", "_gal", "(cm/s2)", "[cm/s2]", "(gal)", "[gal]"]) => {
-                Some(Self::CentimetrePerSecondSquared)
-            }
-            () if ends(&["_m_s2", "(m/s2)", "[m/s2]"]) => Some(Self::MetrePerSecondSquared),
-            () if ends(&["_g", "(g)", "[g]"]) => Some(Self::G),
-            () => None,
-        }
+        ENDINGS.iter().find(|(ending, _)| column.ends_with(ending)).map(|(_, unit)| *unit)
     }
 
     /// Its symbol.

@@ -19,8 +19,6 @@ const STICKS: f64 = 3.0;
 /// Speed of the fastest node over all that touches have added to the velocity of the block, below which it slides so slowly that its surface may stick in
 /// its vibrations: a block that slides down a slope α has sin α − μ cos α.
 const SLOW: f64 = 0.1;
-/// From so many impacts of a block on, the error of one may grow in the next.
-const SEVERAL: usize = 2;
 
 /// The hops of one block.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -50,8 +48,8 @@ pub(crate) struct Hops {
     /// Flights that were hardly longer than the touch before, in which friction acted, of a block that slides slowly, and the speed of the fastest.
     rubbing: u32,
     rubbing_m_s: f64,
-    /// What contact added to the velocity of the block beyond what loads did, in touches that a flight has ended, the largest first [m/s].
-    impacts_m_s: [f64; SEVERAL],
+    /// The two largest impacts of touches that have ended, the largest first: velocity that contact added to the block, less that which bears its loads [m/s].
+    impacts_m_s: [f64; 2],
 }
 
 impl Hops {
@@ -67,19 +65,15 @@ impl Hops {
             self.rubbed |= drive.has_friction;
         } else {
             if self.touched {
-                self.lift_off();
+                self.impacts_m_s = self.impacts_with_this_touch_m_s();
             }
             self.flight_s += dt_s;
         }
         self.touched = drive.touches;
     }
 
-    fn lift_off(&mut self) {
-        self.impacts_m_s = self.impacts_with_this_touch_m_s();
-    }
-
-    /// The largest impacts, the present touch among them.
-    fn impacts_with_this_touch_m_s(&self) -> [f64; SEVERAL] {
+    /// The two largest impacts, the present touch among them [m/s].
+    fn impacts_with_this_touch_m_s(&self) -> [f64; 2] {
         // Of a block that lies or slides, contact bears no more than its loads against it.
         let push_m_s = self.push_m_s.norm();
         let borne_m_s = -self.load_m_s.dot(&self.push_m_s) / push_m_s.max(f64::MIN_POSITIVE);
@@ -131,11 +125,10 @@ impl Hops {
         }
     }
 
-    /// What contact added to the velocity of the block, beyond what its loads did, in the second largest of its impacts \[m/s\]; 0 where there
-    /// were fewer.
+    /// The second largest impact, as the velocity that contact added \[m/s\]; 0 where there was one or none.
     pub(crate) fn second_impact_m_s(&self) -> f64 {
         let all = if self.touched { self.impacts_with_this_touch_m_s() } else { self.impacts_m_s };
-        all[SEVERAL - 1]
+        all[1]
     }
 
     /// Flights that were hardly longer than the touch before, in which friction acted and could stop the block, and the largest speed at which one ended [m/s].

@@ -51,7 +51,7 @@ pub struct Invariants {
     pub chattering_hops: Worst,
     /// Hops of a block with friction between them that could stop it: small differences grow from hop to hop.
     pub hops_with_friction: Worst,
-    /// What contact added to the velocity of a block in the second largest of its impacts, over the largest speed: errors of impacts grow in the next ones.
+    /// Second largest impact of a block: velocity that contact added, less that which bears its loads, over the largest speed.
     pub second_impact: Worst,
     /// Speed that a sliding block gained while its contact rebounded, over the largest speed.
     pub rebound_speed: Worst,

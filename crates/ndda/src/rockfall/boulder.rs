@@ -54,7 +54,7 @@ impl Boulder {
         let (BoulderSize::Diameter { diameter_m: size }
         | BoulderSize::Volume { volume_m3: size }
         | BoulderSize::Mass { mass_kg: size }) = &boulders.size;
-        size.as_distribution().map_or(0.0, |distribution| draw::beyond(&distribution, within(boulders)))
+        draw::cut_off(size, within(boulders))
     }
 
     /// A cube of a volume [m³].

@@ -70,8 +70,13 @@ impl Draw {
     }
 }
 
+/// The part of a number that scatters which its limits cut off.
+pub(super) fn cut_off(scatter: &Scatter, limits: (f64, f64)) -> f64 {
+    scatter.as_distribution().map_or(0.0, |distribution| beyond(&distribution, limits))
+}
+
 /// The part of a distribution that is not between two values.
-pub(super) fn beyond(distribution: &Distribution, (least, most): (f64, f64)) -> f64 {
+fn beyond(distribution: &Distribution, (least, most): (f64, f64)) -> f64 {
     below(distribution, least) + 1.0 - below(distribution, most)
 }
 

@@ -1,8 +1,7 @@
 //! What all boulders together come to.
 
+use ndda_io::scene::{CountingLine, Rockfall};
 use serde::{Deserialize, Serialize};
-
-use ndda_io::scene::Rockfall;
 
 use super::accuracy::Accuracy;
 use super::draw::{self, FRICTIONS_DEG, LITTLE, RESTITUTIONS};
@@ -166,10 +165,9 @@ fn warnings(model: &Model, falls: &[Fall]) -> Vec<String> {
             ends.still_moving, model.loaded.scene.time.end_s
         ));
     }
-    let left_before = |k: usize| {
-        let has_reached = |fall: &Fall| fall.passages.iter().any(|(line, _)| *line == k);
-        falls.iter().filter(|fall| fall.end == End::LeftTerrain && !has_reached(fall)).count()
-    };
+    let has_left = |fall: &&Fall| fall.end == End::LeftTerrain;
+    let left_before =
+        |k: usize| falls.iter().filter(has_left).filter(|fall| first_at(fall, k).is_none()).count();
     let lines = model.rockfall.lines.iter().enumerate().map(|(k, line)| (left_before(k), line));
     if let Some((left, line)) = lines.filter(|(left, _)| *left > 0).max_by_key(|(left, _)| *left) {
         warnings.push(format!(
@@ -194,18 +192,18 @@ fn warnings(model: &Model, falls: &[Fall]) -> Vec<String> {
 /// Restitutions and friction angles of which a part of the distribution is cut off.
 fn laws_cut_off(model: &Model) -> Vec<String> {
     let Rockfall { ground, zones, .. } = &model.rockfall;
-    let all = std::iter::once(("the ground", &ground.restitution, &ground.friction_deg))
-        .chain(zones.iter().map(|zone| (zone.name.as_str(), &zone.restitution, &zone.friction_deg)));
+    let of_ground = ("the ground".to_string(), &ground.restitution, &ground.friction_deg);
+    let of_zones =
+        zones.iter().map(|zone| (format!("zone `{}`", zone.name), &zone.restitution, &zone.friction_deg));
     let mut found = Vec::new();
-    for (name, restitution, friction_deg) in all {
+    for (name, restitution, friction_deg) in std::iter::once(of_ground).chain(of_zones) {
         for (what, scatter, limits) in
             [("restitution", restitution, RESTITUTIONS), ("friction_deg", friction_deg, FRICTIONS_DEG)]
         {
-            let part =
-                scatter.as_distribution().map_or(0.0, |distribution| draw::beyond(&distribution, limits));
+            let part = draw::cut_off(scatter, limits);
             if part > LITTLE {
                 found.push(format!(
-                    "{what} of `{name}`: {:.1} % of its distribution lies beyond {} to {} and is cut off; give it a smaller spread, or a `Triangular` one",
+                    "{what} of {name}: {:.1} % of its distribution lies beyond {} to {} and is cut off; give it a smaller spread, or a `Triangular` one",
                     100.0 * part, limits.0, limits.1
                 ));
             }
@@ -214,12 +212,15 @@ fn laws_cut_off(model: &Model) -> Vec<String> {
     found
 }
 
+/// A boulder when it first reaches the line with a number; none if it does not.
+fn first_at(fall: &Fall, line: usize) -> Option<Moment> {
+    fall.passages.iter().find(|(passed, _)| *passed == line).map(|(_, moment)| *moment)
+}
+
 fn lines(model: &Model, falls: &[Fall]) -> Vec<LineResult> {
-    let result = |(k, line): (usize, &ndda_io::scene::CountingLine)| {
-        let first =
-            |fall: &Fall| fall.passages.iter().find(|(line, _)| *line == k).map(|(_, moment)| *moment);
-        let moments: Vec<Moment> = falls.iter().filter_map(first).collect();
-        let might = falls.iter().filter(|fall| fall.end != End::Rest && first(fall).is_none()).count();
+    let result = |(k, line): (usize, &CountingLine)| {
+        let moments: Vec<Moment> = falls.iter().filter_map(|fall| first_at(fall, k)).collect();
+        let might = falls.iter().filter(|fall| fall.end != End::Rest && first_at(fall, k).is_none()).count();
         let [low, _] = wilson(moments.len(), falls.len());
         let [_, high] = wilson(moments.len() + might, falls.len());
         LineResult {

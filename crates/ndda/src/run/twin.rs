@@ -1,7 +1,7 @@
 //! Whether a run's end may be believed although each of its steps may: runs of the same scene that differ a little, its *twins*.
 //!
 //! A twin that begins with other velocities, by a ten-thousandth of the largest speed, ends somewhere else, or with other velocities, where the motion is
-//! sensitive: in heaps, falling columns, toppling slopes, and where a block hops on contact that is not damped. One with a shorter step does where the errors
+//! sensitive: in heaps, falling columns, toppling slopes, and where a block hops on contact that is not damped. One with half the step does where the errors
 //! of impacts have grown in the next ones.
 
 mod parted;
@@ -24,7 +24,8 @@ use parted::{farthest_m, height_m, parted};
 /// Whether twins of the run are run after it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Sensitivity {
-    /// Where three or more blocks have moved in an accurate run, or two that end beside each other, one has hopped several times with friction in between, or one has hit twice or more.
+    /// After an accurate run in which three or more blocks have moved, or two that end beside each other, or in which one has hopped several times with
+    /// friction in between, or hit twice or more.
     #[default]
     Auto,
     /// After each accurate run with contact.
@@ -51,8 +52,8 @@ impl FromStr for Sensitivity {
 pub(super) enum Twin {
     /// Its velocities at the start, by so many ten-thousandths of the largest speed.
     Push(f64),
-    /// Its step, which is so many times as long.
-    Step(f64),
+    /// Its step, which is half as long: its errors are half of those of the run where friction acts in impacts, a quarter elsewhere.
+    HalfStep,
 }
 
 /// Velocities of a twin differ by this part of the largest speed.
@@ -60,15 +61,13 @@ const PUSH: f64 = 1e-4;
 /// Pushes of the twins over [`PUSH`]. There is one such twin; where a block hops, the next one is run as long as none has parted, since a single one may end
 /// near the run by chance.
 const PUSHES: [Twin; 3] = [Twin::Push(1.0), Twin::Push(-1.0), Twin::Push(0.5)];
-/// Its errors are half of those of the run where friction acts in impacts, a quarter elsewhere, and its impacts fall elsewhere in its steps.
-const SHORTER: Twin = Twin::Step(0.5);
 /// Without growth, a push shifts a block by its speed times the time of the run; this many times that is no growth.
 const DRIFTS: f64 = 3.0;
 /// So many blocks must move for their motions to disturb each other.
 const ENOUGH: usize = 3;
 /// So many hops of one block, with friction in between, make small differences grow.
 const HOPS: f64 = 8.0;
-/// Part of the largest speed that contact adds to the velocity of a block in its second largest impact, from which on a shorter step is tried.
+/// Part of the largest speed that contact adds to the velocity of a block in its second largest impact, from which on half the step is tried.
 const IMPACT: f64 = 0.05;
 
 /// Whether a run that begins here makes a twin, by default, if its blocks move far enough.
@@ -89,7 +88,7 @@ impl Sensitivity {
             })
         };
         let hops = hops(simulation);
-        let (pushes, shorter) = match self {
+        let (pushes, halves) = match self {
             _ if !simulation.has_contact() => (false, false),
             Self::Never => (false, false),
             Self::Always => {
@@ -106,15 +105,15 @@ impl Sensitivity {
             (true, false) => PUSHES[..1].to_vec(),
             (true, true) => PUSHES.to_vec(),
         };
-        twins.extend(shorter.then_some(SHORTER));
+        twins.extend(halves.then_some(Twin::HalfStep));
         twins
     }
 }
 
-/// What is told before twins are run.
+/// The line that announces repetitions of a run.
 pub(super) fn told(twins: &[Twin]) -> String {
     let pushed = "velocities changed by 1e-4 of the largest speed";
-    let by = match (twins.contains(&PUSHES[0]), twins.contains(&SHORTER)) {
+    let by = match (twins.contains(&PUSHES[0]), twins.contains(&Twin::HalfStep)) {
         (true, true) => format!("{pushed}, then with half the step"),
         (true, false) => pushed.into(),
         (false, _) => "half the step, since blocks have hit several times".into(),
@@ -207,9 +206,9 @@ fn run(
                     .for_each(|v| *v += push);
             }
         }
-        Twin::Step(times) => {
-            steps_of_twin = (steps as f64 / times).ceil() as u64;
-            simulation.change_step(simulation.step_s() * steps as f64 / steps_of_twin as f64)?;
+        Twin::HalfStep => {
+            steps_of_twin = 2 * steps;
+            simulation.change_step(0.5 * simulation.step_s())?;
         }
     }
     simulation.restore(changed).expect("it is of this simulation");

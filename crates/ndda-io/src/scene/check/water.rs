@@ -44,11 +44,12 @@ impl Check<'_> {
                 self.numbers(&format!("{path}.pressure_pa"), &[*pressure_pa]);
                 self.numbers(&format!("{path}.at_m"), at_m);
                 self.numbers(&format!("{path}.gradient_pa_m"), gradient_pa_m);
-                if *gradient_pa_m == [0.0; 3] && *pressure_pa < 0.0 {
-                    let message = format!("{pressure_pa} Pa everywhere: must not be negative");
-                    self.error(format!("{path}.pressure_pa"), message, "water in joints carries no suction");
-                } else if *gradient_pa_m == [0.0; 3] {
-                    self.small(format!("{path}.pressure_pa"), (*pressure_pa, "Pa"), LEAST_PA, UNIT);
+                if *gradient_pa_m == [0.0; 3] {
+                    let path = format!("{path}.pressure_pa");
+                    match *pressure_pa < 0.0 {
+                        true => self.suction(path, *pressure_pa),
+                        false => self.small(path, (*pressure_pa, "Pa"), LEAST_PA, UNIT),
+                    }
                 }
             }
             Pressure::Points { along, at_m, rows } => {
@@ -82,16 +83,17 @@ impl Check<'_> {
         for (i, row) in rows.iter().enumerate() {
             self.numbers(&format!("{path}[{i}]"), &[row.0, row.1]);
             if row.1 < 0.0 {
-                self.error(
-                    format!("{path}[{i}]"),
-                    format!("{} Pa: must not be negative", row.1),
-                    "water in joints carries no suction",
-                );
+                self.suction(format!("{path}[{i}]"), row.1);
             }
         }
         if let Some(i) = (1..rows.len()).find(|&i| rows[i].0 <= rows[i - 1].0) {
             let message = format!("{} m does not come after {} m", rows[i].0, rows[i - 1].0);
             self.error(format!("{path}[{i}]"), message, "sort the rows by distance");
         }
+    }
+
+    fn suction(&mut self, path: String, pressure_pa: f64) {
+        let message = format!("{pressure_pa} Pa: must not be negative");
+        self.error(path, message, "water in joints carries no suction");
     }
 }

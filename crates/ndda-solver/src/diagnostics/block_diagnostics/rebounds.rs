@@ -35,7 +35,7 @@ impl BlockDiagnostics {
         worst
     }
 
-    /// Largest second impact of a block, over the largest speed; what rounding may have done does not count.
+    /// Largest of the second largest impacts of all blocks, over a speed; what rounding may have done does not count.
     pub(crate) fn second_impact(&self, speed_m_s: f64, rounding_j: f64) -> Worst {
         self.worst_speed(speed_m_s, rounding_j, |balance| balance.hops.second_impact_m_s())
     }

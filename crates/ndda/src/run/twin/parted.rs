@@ -14,7 +14,7 @@ use crate::summary::LabelWord;
 /// Parts of a tetrahedron's height by which blocks of a twin may end away, and of the largest speed by which their velocities may differ: of one that
 /// is pushed, a third of what an accurate label allows, and all of it.
 const OF_PUSH: (f64, f64) = (0.03, 0.01);
-/// Of one with half the step, which has half of the errors where friction acts in impacts, and a quarter elsewhere: half of what the label allows.
+/// The same of one with half the step: half of what the label allows, since its errors are at most half of those of the run.
 const OF_STEP: (f64, f64) = (0.05, 0.005);
 /// The most by which the label advises to divide a step.
 const MOST: f64 = 64.0;
@@ -38,11 +38,11 @@ pub(crate) struct Parted {
 }
 
 impl Parted {
-    /// What the run is.
+    /// The label that this gives to the run.
     pub(crate) fn word(&self) -> LabelWord {
         match self.twin {
             Twin::Push(_) => LabelWord::Sensitive,
-            Twin::Step(_) => LabelWord::Inaccurate,
+            Twin::HalfStep => LabelWord::Inaccurate,
         }
     }
 }
@@ -88,7 +88,7 @@ pub(super) fn parted(
     let (state, largest_m_s) = (simulation.state(), simulation.speed_scale_m_s());
     let (away, faster) = match twin {
         Twin::Push(_) => OF_PUSH,
-        Twin::Step(_) => OF_STEP,
+        Twin::HalfStep => OF_STEP,
     };
     let differs = |block: BlockId| {
         let apart_m = farthest_m(simulation, block, &state.position, &ended.0);
@@ -119,7 +119,7 @@ struct Difference {
     /// Distance [m] and difference of velocities [m/s].
     apart_m: f64,
     faster_m_s: f64,
-    /// The same over what is allowed.
+    /// Both over their limits.
     place: f64,
     speed: f64,
 }
