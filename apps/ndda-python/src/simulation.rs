@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use ndda::driver::{BlockId, ChangeError, Driver, DriverRestoreError, DriverSnapshot, Vec3};
+use ndda::summary::Label;
 use numpy::{PyArray1, PyArray2, PyReadwriteArray2};
 use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
@@ -14,7 +15,7 @@ use crate::begin::{begun, saved};
 use crate::errors::{scene_error, stop_error};
 use crate::law::{self, Raised, own_or};
 use crate::scene::{Scene, warnings};
-use crate::watched::{pool, slice, within};
+use crate::watched::{pool, slice, watched, within};
 
 /// A scene on its way through time; `ndda.Simulation` wraps it.
 #[pyclass(subclass, module = "ndda._core")]
@@ -250,7 +251,11 @@ impl Simulation {
         Ok(dict)
     }
 
-    /// The label: `accurate`, `inaccurate` or `stopped`.
+    /// The label: `accurate`, `inaccurate`, `sensitive` or `stopped`.
+    ///
+    /// After the last step it is that of `ndda run`, which runs some scenes again: where blocks hit several times or disturb each
+    /// other, this takes as long as the run, once. Before the last step, after forces, velocities or changes of the scene, and
+    /// with a law of one's own, it judges the steps that were taken.
     ///
     /// Examples
     /// --------
@@ -259,8 +264,8 @@ impl Simulation {
     /// >>> simulation.label
     /// 'accurate'
     #[getter]
-    fn label(&mut self) -> &'static str {
-        self.driver.label().word.as_str()
+    fn label(&mut self, py: Python<'_>) -> PyResult<&'static str> {
+        Ok(self.judged(py)?.word.as_str())
     }
 
     /// Why the label is not `accurate`.
@@ -272,8 +277,8 @@ impl Simulation {
     /// >>> simulation.reasons
     /// []
     #[getter]
-    fn reasons(&mut self) -> Vec<String> {
-        self.driver.label().reasons
+    fn reasons(&mut self, py: Python<'_>) -> PyResult<Vec<String>> {
+        Ok(self.judged(py)?.reasons)
     }
 
     /// CRC-32 of the state, as in `summary.json`.
@@ -382,6 +387,12 @@ impl Simulation {
         let Self { driver, pool, raised } = self;
         let done = py.detach(|| within(pool.as_ref(), || slice(driver, left)));
         done.map_err(|stop| own_or(raised, || stop_error(py, &stop)))
+    }
+
+    /// The label, for which steps may be taken again; other Python threads run meanwhile, and Ctrl-C ends it.
+    fn judged(&mut self, py: Python<'_>) -> PyResult<Label> {
+        let Self { driver, pool, .. } = self;
+        watched(py, |watch| within(pool.as_ref(), || driver.label_watched(&watch.stop, watch.tell)))
     }
 
     /// Refuses to show a state that a step left half done.

@@ -1,6 +1,7 @@
 //! A simulation that somebody else steps: a script, a notebook, another program.
 
 mod change;
+mod judged;
 mod saved;
 
 use std::ops::ControlFlow;
@@ -9,27 +10,29 @@ use std::sync::Arc;
 use ndda_contact::FacetContact;
 use ndda_io::diagnostic::SceneErrors;
 use ndda_io::{checkpoint, read};
-use ndda_solver::{DriveError, RestoreError, Sample, Settled, Simulation, SinkError, Snapshot, StepError};
+use ndda_solver::{
+    DriveError, RestoreError, Sample, Settled, Simulation, SinkError, Snapshot, StartSnapshot, StepError,
+};
 
 pub use change::ChangeError;
 pub use ndda_mesh::{BlockId, Vec3};
 pub use saved::{LoadError, SaveError};
 
+use judged::Course;
+
 use crate::Model;
 use crate::build::Choices;
-use crate::judge::verdict;
 use crate::run::contact_rows::{COLUMNS, contact_rows};
 use crate::run::fields::FieldWriter;
 use crate::run::schedule::is_due;
-use crate::summary::Label;
 
 /// Rows of a history that there is room for from the start.
 const ORDINARY_ROWS: u64 = 10_000;
 
 /// A simulation that is stepped from outside, up to the first of its stages if it has any, and judged as [`Run`](crate::Run) judges it.
 ///
-/// Energies are sampled at the steps at which a run of the same scene samples them, whatever the caller looks at, so that state
-/// and label after the scene's last step are those of the run.
+/// Energies are sampled at the steps at which a run of the same scene samples them, whatever the caller looks at, and the scene is run again
+/// where the run repeats it, so that state and label after the scene's last step are those of the run.
 ///
 /// ```
 /// use ndda::{Model, driver::Driver};
@@ -54,6 +57,7 @@ pub struct Driver {
     /// What was sampled so far.
     history: Vec<Sample>,
     watches_contacts: bool,
+    course: Course,
     /// Text of the scene as it was at the start, before any [`change`](Driver::change).
     origin: Arc<str>,
     parts: Option<Parts>,
@@ -70,6 +74,7 @@ pub struct DriverSnapshot {
     scene: String,
     snapshot: Snapshot,
     stopped: Option<StepError>,
+    is_undisturbed: bool,
 }
 
 /// Why a snapshot cannot be restored.
@@ -115,23 +120,30 @@ impl Driver {
         parts: Option<Parts>,
         settling: &mut dyn FnMut(&Settled) -> ControlFlow<()>,
     ) -> Result<Self, StepError> {
+        let built = model.simulation.start_snapshot();
         if let Some(settle) = model.loaded.scene.settle {
             model.simulation.settle_watched(&crate::build::settle(settle), settling)?;
         }
         let start = model.simulation.sample()?;
         let origin = model.loaded.text.as_str().into();
-        let mut driver = Self::around(model, origin, parts);
+        let mut driver = Self::around(model, (origin, built, true), parts);
         driver.history.push(start);
         Ok(driver)
     }
 
-    fn around(model: Model, origin: Arc<str>, parts: Option<Parts>) -> Self {
+    /// A driver of a model, with the text and the state at its start, and whether only steps have been taken since.
+    fn around(
+        model: Model,
+        (origin, built, is_undisturbed): (Arc<str>, StartSnapshot, bool),
+        parts: Option<Parts>,
+    ) -> Self {
         let rows = u64::from(model.loaded.scene.output.history_rows);
         let steps = crate::build::steps(&model.loaded.scene.time);
         // Room for all rows of an ordinary run: a step allocates nothing.
         let history = Vec::with_capacity(rows.min(steps).min(ORDINARY_ROWS) as usize + 2);
         let (stopped, facets, watches_contacts) = (None, Vec::new(), false);
-        Self { model, steps, rows, stopped, facets, history, watches_contacts, origin, parts }
+        let course = Course::new(built, is_undisturbed);
+        Self { model, steps, rows, stopped, facets, history, watches_contacts, course, origin, parts }
     }
 
     /// Builds a text of the scene with the parts that the driver was begun with.
@@ -161,6 +173,7 @@ impl Driver {
         if let Some(error) = &self.stopped {
             return Err(error.clone());
         }
+        self.course.goes_on();
         let simulation = &mut self.model.simulation;
         let mut done = simulation.step().map(|_| ());
         if done.is_ok() && is_due(simulation.state().step, self.steps, self.rows) {
@@ -184,12 +197,6 @@ impl Driver {
     /// Samples at the steps at which a run of the scene samples, the start included; a driver that was loaded begins anew.
     pub fn history(&self) -> &[Sample] {
         &self.history
-    }
-
-    /// The simulation's label so far: a sample is taken first, so that nothing since the last one is missed.
-    pub fn label(&mut self) -> Label {
-        let stopped_by = self.sample().err().map(|error| format!("[{}] {error}", error.code()));
-        verdict::label(&self.model.simulation, stopped_by.as_deref())
     }
 
     /// Cauchy stress xx, yy, zz, xy, yz, zx of each tetrahedron \[Pa\].
@@ -221,6 +228,7 @@ impl Driver {
     /// # Errors
     /// [`DriveError`]; nothing has changed then.
     pub fn set_force(&mut self, block: BlockId, force_n: Vec3) -> Result<(), DriveError> {
+        self.course.is_disturbed();
         self.model.simulation.set_force(block, force_n)
     }
 
@@ -234,6 +242,7 @@ impl Driver {
         velocity_m_s: Vec3,
         spin_rad_s: Vec3,
     ) -> Result<(), DriveError> {
+        self.course.is_disturbed();
         self.model.simulation.set_velocity(block, velocity_m_s, spin_rad_s)
     }
 
@@ -241,7 +250,7 @@ impl Driver {
     pub fn snapshot(&self) -> DriverSnapshot {
         let (origin, scene) = (self.origin.clone(), self.model.loaded.text.clone());
         let (snapshot, stopped) = (self.model.simulation.snapshot(), self.stopped.clone());
-        DriverSnapshot { origin, scene, snapshot, stopped }
+        DriverSnapshot { origin, scene, snapshot, stopped, is_undisturbed: self.course.is_undisturbed }
     }
 
     /// Goes on from a snapshot of the same scene, bit for bit.
@@ -260,6 +269,8 @@ impl Driver {
             self.put(model);
         }
         self.stopped.clone_from(&snapshot.stopped);
+        self.course.goes_on();
+        self.course.is_undisturbed = snapshot.is_undisturbed;
         let step = self.simulation().state().step;
         self.history.retain(|sample| sample.step <= step);
         Ok(())

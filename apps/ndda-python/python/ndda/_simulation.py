@@ -29,7 +29,8 @@ _HISTORY = _core._HISTORY
 class Simulation(_core.Simulation):
     """A scene on its way through time.
 
-    State and label after the scene's last step are those of `ndda run`, bit for bit, however the steps are taken.
+    State and label after the scene's last step are those of `ndda run`, bit for bit, however the steps are taken; for the
+    label, some scenes run again (see `label`).
     Two simulations can step in two threads; one simulation belongs to one thread at a time.
 
     Parameters

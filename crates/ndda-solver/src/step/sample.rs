@@ -185,6 +185,11 @@ impl Simulation {
         self.audit.contacts.as_deref().unwrap_or(&[])
     }
 
+    /// Puts noted facets in the place of the present ones, which are returned; none stands for contacts that are not watched.
+    pub fn replace_contacts(&mut self, contacts: Option<Vec<FacetContact>>) -> Option<Vec<FacetContact>> {
+        std::mem::replace(&mut self.audit.contacts, contacts)
+    }
+
     /// Facets in contact at the present positions of the blocks; the history of contact is not changed.
     ///
     /// # Errors

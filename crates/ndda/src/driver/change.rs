@@ -47,6 +47,7 @@ impl Driver {
         }
         model.simulation.take_over(&mut self.model.simulation)?;
         self.put(model);
+        self.course.is_disturbed();
         Ok(())
     }
 }

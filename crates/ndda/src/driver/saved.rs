@@ -20,9 +20,11 @@ struct Saved<S = Snapshot> {
     origin: String,
     identity: Identity,
     snapshot: S,
+    /// Whether only steps have been taken since the start.
+    is_undisturbed: bool,
 }
 
-const KIND: &str = "ndda.driver/1";
+const KIND: &str = "ndda.driver/2";
 
 /// Why a driver cannot be saved.
 #[derive(Debug, thiserror::Error)]
@@ -73,7 +75,8 @@ impl Driver {
         let stem = Path::new(&name).file_stem().unwrap_or(&name).to_string_lossy().into_owned();
         let identity = Identity::new(stem, loaded.text.clone(), folder.join(name), &loaded.scene);
         let snapshot = self.model.simulation.snapshot_view();
-        let saved = Saved { kind: KIND.into(), origin: self.origin.to_string(), identity, snapshot };
+        let (kind, origin) = (KIND.into(), self.origin.to_string());
+        let saved = Saved { kind, origin, identity, snapshot, is_undisturbed: self.course.is_undisturbed };
         Ok(checkpoint::write_file(file, &saved)?)
     }
 
@@ -82,9 +85,9 @@ impl Driver {
     /// # Errors
     /// [`LoadError`].
     pub fn load(path: &Path, parts: Option<Parts>) -> Result<Self, LoadError> {
-        let (origin, identity, snapshot) = if path.is_dir() {
+        let (origin, identity, snapshot, is_undisturbed) = if path.is_dir() {
             let (identity, snapshot) = Run::last_checkpoint(path)?;
-            (identity.text.clone(), identity, snapshot)
+            (identity.text.clone(), identity, snapshot, true)
         } else {
             let not_saved = || LoadError::NotSaved(path.display().to_string());
             let saved: Saved = match checkpoint::read_file(path) {
@@ -98,14 +101,15 @@ impl Driver {
             if saved.kind != KIND {
                 return Err(not_saved());
             }
-            (saved.origin, saved.identity, saved.snapshot)
+            (saved.origin, saved.identity, saved.snapshot, saved.is_undisturbed)
         };
         let folder = identity.folder();
         OutsideFile::verify_all(&identity.outside, folder)?;
         let file = identity.file.display().to_string();
         let loaded = read::load_text(&file, &identity.text, &[], Some(folder))?;
         let mut model = Model::resuming_with(loaded, folder, choices(parts.as_ref()))?;
+        let built = model.simulation.start_snapshot();
         model.simulation.restore(snapshot)?;
-        Ok(Self::around(model, origin.into(), parts))
+        Ok(Self::around(model, (origin.into(), built, is_undisturbed), parts))
     }
 }

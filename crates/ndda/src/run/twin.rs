@@ -49,7 +49,7 @@ impl FromStr for Sensitivity {
 
 /// How a twin differs from its run.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Twin {
+pub(crate) enum Twin {
     /// Its velocities at the start, by so many ten-thousandths of the largest speed.
     Push(f64),
     /// Its step, which is half as long: its errors are half of those of the run where friction acts in impacts, a quarter elsewhere.
@@ -78,7 +78,7 @@ pub(crate) fn may_want_twin(simulation: &Simulation) -> bool {
 
 impl Sensitivity {
     /// The twins of an accurate run that ends here, to be run one after the other until one parts.
-    pub(super) fn twins(self, simulation: &Simulation) -> Vec<Twin> {
+    pub(crate) fn twins(self, simulation: &Simulation) -> Vec<Twin> {
         let ids = || simulation.blocks().ids();
         let moved = || {
             ids().filter(|&block| {
@@ -111,7 +111,7 @@ impl Sensitivity {
 }
 
 /// The line that announces repetitions of a run.
-pub(super) fn told(twins: &[Twin]) -> String {
+pub(crate) fn told(twins: &[Twin]) -> String {
     let pushed = "velocities changed by 1e-4 of the largest speed";
     let by = match (twins.contains(&PUSHES[0]), twins.contains(&Twin::HalfStep)) {
         (true, true) => format!("{pushed}, then with half the step"),
@@ -132,26 +132,38 @@ pub(super) fn judge(
     (stop, strict): (&AtomicBool, bool),
 ) {
     let began = Instant::now();
-    let found = match part(simulation, start, settle, twins, stop) {
-        Ok(None) if stop.load(Ordering::Relaxed) => {
-            summary.warnings.push(
-                "the second run was interrupted, so it is not known whether the motion is sensitive".into(),
-            );
-            None
-        }
-        Ok(parted) => parted.map(|parted| (parted.word(), parted.to_string())),
-        Err(error) => Some((
-            LabelWord::Sensitive,
-            format!("a second run, whose start or step differs a little, stops {error}"),
-        )),
-    };
-    if let Some((word, reason)) = found {
-        summary.label = Label { word, reasons: vec![reason] };
+    if let Some(label) = label_of_twins(simulation, start, settle, twins, stop) {
+        summary.label = label;
         summary.status = if strict { Status::Failed } else { summary.status };
+    } else if stop.load(Ordering::Relaxed) {
+        summary.warnings.push(
+            "the second run was interrupted, so it is not known whether the motion is sensitive".into(),
+        );
     }
     let spent_s = began.elapsed().as_secs_f64();
     summary.wall_s += spent_s;
     summary.stages_s.0.push((SECOND_RUN.into(), spent_s));
+}
+
+/// The label of an accurate run of which a twin ends elsewhere; none where all end beside it, or where somebody asks to end.
+pub(crate) fn label_of_twins(
+    simulation: &mut Simulation,
+    start: &StartSnapshot,
+    settle: Option<&Settle>,
+    twins: &[Twin],
+    stop: &AtomicBool,
+) -> Option<Label> {
+    let contacts = simulation.replace_contacts(None);
+    let parted = part(simulation, start, settle, twins, stop);
+    simulation.replace_contacts(contacts);
+    let (word, reason) = match parted {
+        Ok(parted) => parted.map(|parted| (parted.word(), parted.to_string()))?,
+        Err(error) => (
+            LabelWord::Sensitive,
+            format!("a second run, whose start or step differs a little, stops {error}"),
+        ),
+    };
+    Some(Label { word, reasons: vec![reason] })
 }
 
 /// Runs twins of a simulation that has come to its end from `start`, and puts it back into its end. None where all stay together, or
@@ -159,7 +171,7 @@ pub(super) fn judge(
 ///
 /// # Errors
 /// [`StepError`] that stops a twin; the end is put back then, too.
-pub(super) fn part(
+fn part(
     simulation: &mut Simulation,
     start: &StartSnapshot,
     settle: Option<&Settle>,
