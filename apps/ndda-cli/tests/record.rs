@@ -37,6 +37,33 @@ fn a_record_is_measured_and_its_block_slides_as_its_closed_form_says() {
 }
 
 #[test]
+fn velocities_of_a_history_are_resampled_filtered_and_corrected_as_records_are() {
+    let folder = tempfile::tempdir().unwrap();
+    let rows: String =
+        (0..100).map(|i| format!("{},{}\n", 0.01 * f64::from(i), 0.02 * f64::from(i))).collect();
+    std::fs::write(folder.path().join("history.csv"), format!("time_s,crest.velocity_x_m_s\n{rows}"))
+        .unwrap();
+    let measured = |more: &[&str]| {
+        let args = [&["history.csv", "--column", "crest.velocity_x_m_s", "--json"], more].concat();
+        let done = record(folder.path(), &args);
+        assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+        let json: serde_json::Value = serde_json::from_slice(&done.stdout).unwrap();
+        (
+            json["peak_acceleration_m_s2"]["value"].as_f64().unwrap(),
+            json["record"].as_str().unwrap().to_owned(),
+        )
+    };
+    assert!((measured(&[]).0 - 2.0).abs() < 1e-9);
+    let (left_m_s2, told) = measured(&["--baseline", "linear", "--resample", "0.02"]);
+    assert!(
+        left_m_s2 < 1e-9 && told.contains("brought to 50 rows of 0.02 s, less a velocity of 2"),
+        "{left_m_s2}: {told}"
+    );
+    let (_, told) = measured(&["--filter", "0.1,25"]);
+    assert!(told.contains("filtered from 0.1 to 25 Hz"), "{told}");
+}
+
+#[test]
 fn what_is_no_record_is_refused_with_its_cure() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("pulse.at2"), pulse().replace("NPTS= 50", "NPTS= 51")).unwrap();
@@ -58,6 +85,11 @@ fn what_is_no_record_is_refused_with_its_cure() {
             "below that of --friction",
         ),
         (vec!["table.csv", "--column", "ax", "--damping", "1.5"], "from 0 to below 1"),
+        (vec!["table.csv", "--column", "ax", "--factor", "nan"], "--factor NaN: write a finite number"),
+        (
+            vec!["table.csv", "--column", "crest.velocity_x_m_s", "--unit", "g"],
+            "write no unit for a history, whose velocities are in m/s",
+        ),
     ] {
         let done = record(folder.path(), &args);
         let said = String::from_utf8_lossy(&done.stderr).into_owned();

@@ -141,6 +141,9 @@ fn check(request: &Request) -> Result<(), ShakingError> {
     if !(0.0..1.0).contains(&request.damping) {
         return wrong("damping", request.damping.to_string(), "a damping ratio from 0 to below 1, as 0.05");
     }
+    if !request.record.factor.is_finite() {
+        return wrong("factor", request.record.factor.to_string(), "a finite number");
+    }
     if let Some((low, high)) = request.record.filter_hz
         && !(0.0 <= low && low < high && high.is_finite())
     {

@@ -132,7 +132,7 @@ fn check_speed(file: &Path, rows: &[(f64, f64)], factor: f64) -> Result<(), Reco
     for (row, pair) in (2..).zip(rows.windows(2)) {
         let [(from_s, a), (to_s, b)] = [pair[0], pair[1]];
         speed_m_s += factor * (0.5 * a + 0.5 * b) * (to_s - from_s);
-        // NaN is beyond the limit, too.
+        // NaN, of a sum of infinite ones, is beyond the limit, too.
         if speed_m_s.is_nan() || speed_m_s.abs() > LIGHT_M_S {
             let reason = "brings the ground beyond the speed of light: give accelerations in m/s², or a smaller factor";
             return Err(RecordError::Row { file: file.to_path_buf(), row, reason });
@@ -152,10 +152,7 @@ impl Record {
         let unit = self.unit.or(named).unwrap_or(AccelerationUnit::MetrePerSecondSquared);
         let factor = self.factor * unit.m_s2();
         rows.iter_mut().for_each(|row| row.1 *= factor);
-        check_speed(&file, &rows, 1.0)?;
-        let gap = Gap::longest_in(&rows);
-        let (count, end_s) = (rows.len(), rows[rows.len() - 1].0);
-        let mut told = format!("{}: {count} rows to {end_s:.6} s", file.display());
+        let mut told = format!("{}: {} rows to {:.6} s", file.display(), rows.len(), rows[rows.len() - 1].0);
         if self.unit.is_none() && named.is_none() {
             told += ", read in m/s², since neither the file nor the name of the column gives a unit: set `unit` to G, MetrePerSecondSquared or \
                      CentimetrePerSecondSquared (--unit g, m/s2 or cm/s2)";
@@ -167,15 +164,32 @@ impl Record {
                 named.symbol()
             );
         }
+        self.processed(&file, rows, told)
+    }
+
+    /// Resamples, filters and corrects times [s] and accelerations [m/s²] of a file as the scene says; `told` says what they are.
+    ///
+    /// # Errors
+    /// [`RecordError`] naming file and row.
+    pub fn processed(
+        &self,
+        file: &Path,
+        mut rows: Vec<(f64, f64)>,
+        mut told: String,
+    ) -> Result<Prepared, RecordError> {
+        check_speed(file, &rows, 1.0)?;
+        let gap = Gap::longest_in(&rows);
         let needed_s = self.filter_hz.and_then(|_| uneven(&rows));
         if let Some(spacing_s) = self.resample_s.or(needed_s) {
-            let (given, new) = (rows.len(), ((end_s - rows[0].0) / spacing_s) as usize);
+            let given = rows.len();
+            let spacing = |rows| RecordError::Spacing { file: file.to_path_buf(), rows, given };
+            let new = ((rows[given - 1].0 - rows[0].0) / spacing_s) as usize;
             if new > MOST_ROWS {
-                return Err(RecordError::Spacing { file, rows: new, given });
+                return Err(spacing(new));
             }
             rows = process::resampled(&rows, spacing_s);
             if rows.len() < 2 {
-                return Err(RecordError::Spacing { file, rows: rows.len(), given });
+                return Err(spacing(rows.len()));
             }
             told += &format!(", brought to {} rows of {spacing_s} s", rows.len());
         }

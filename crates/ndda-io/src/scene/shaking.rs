@@ -75,7 +75,7 @@ impl AccelerationUnit {
     }
 
     /// Its symbol.
-    pub(crate) fn symbol(self) -> &'static str {
+    pub fn symbol(self) -> &'static str {
         match self {
             Self::G => "g",
             Self::MetrePerSecondSquared => "m/s²",

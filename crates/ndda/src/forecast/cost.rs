@@ -65,6 +65,8 @@ pub struct Guess {
     pub settles: bool,
     /// Time of the twin that shows whether the motion is sensitive, which a run makes if three or more blocks move; none where fewer can [s].
     pub twin_s: Option<f64>,
+    /// Time of the twin with half the step, which a run makes if a block hits several times; none where blocks cannot touch [s].
+    pub half_step_s: Option<f64>,
     /// Most memory of this process, which has done all that a run does [B]; none where the system does not report it.
     pub memory_bytes: Option<u64>,
     /// Files.
@@ -106,9 +108,10 @@ pub fn guess(scene: &Scene, simulation: &mut Simulation) -> Result<Guess, SinkEr
     let rows = events(steps, scene.output.history_rows.into());
     let frames = frames(scene);
     let run_s = first_s + steps as f64 * step_s + rows as f64 * row_s + frames as f64 * frame_s;
-    // The twin writes nothing, and follows no stages.
-    let twin_s = (scene.stages.is_empty() && twin::may_want_twin(simulation))
-        .then_some(first_s + steps as f64 * step_s);
+    // Twins write nothing, and follow no stages.
+    let [twin_s, half_step_s] = [twin::may_want_twin(simulation), twin::may_want_half_step(simulation)]
+        .map(|may| (scene.stages.is_empty() && may).then_some(first_s + steps as f64 * step_s));
+    let half_step_s = half_step_s.map(|twin_s| 2.0 * twin_s);
     let files = files(scene, simulation, (rows, frames), frame.len() as u64);
     let settles = scene.settle.is_some();
     Ok(Guess {
@@ -117,6 +120,7 @@ pub fn guess(scene: &Scene, simulation: &mut Simulation) -> Result<Guess, SinkEr
         touches,
         settles,
         twin_s,
+        half_step_s,
         memory_bytes: machine::peak_memory_bytes(),
         files,
     })
@@ -211,6 +215,12 @@ impl fmt::Display for Guess {
                 ", {twin_s:.1} s more for a second run, which shows whether small differences grow, if three or more blocks move,"
             )?;
         }
+        if let Some(half_step_s) = self.half_step_s {
+            write!(
+                f,
+                ", {half_step_s:.1} s more for one with half the step, if a block hits several times,"
+            )?;
+        }
         if let Some(bytes) = self.memory_bytes {
             write!(f, " and {} of memory", readable(bytes))?;
         }
@@ -250,6 +260,11 @@ mod tests {
     fn a_twin_is_foreseen_where_three_blocks_can_move() {
         let two = guess_of(2);
         assert_eq!(two.twin_s, None);
+        assert!(0.0 < two.half_step_s.unwrap() && two.half_step_s.unwrap() <= 2.0 * two.run_s, "{two:?}");
+        assert!(
+            two.to_string().contains("s more for one with half the step, if a block hits several times"),
+            "{two}"
+        );
         assert!(!two.to_string().contains("second run"), "{two}");
         let three = guess_of(3);
         let twin_s = three.twin_s.unwrap();

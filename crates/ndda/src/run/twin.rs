@@ -76,6 +76,11 @@ pub(crate) fn may_want_twin(simulation: &Simulation) -> bool {
     simulation.has_contact() && free.take(ENOUGH).count() == ENOUGH
 }
 
+/// Whether a run that begins here makes a twin with half the step, by default, if a block hits several times.
+pub(crate) fn may_want_half_step(simulation: &Simulation) -> bool {
+    simulation.has_contact() && simulation.blocks().ids().any(|block| moves(simulation, block))
+}
+
 impl Sensitivity {
     /// The twins of an accurate run that ends here, to be run one after the other until one parts.
     pub(crate) fn twins(self, simulation: &Simulation) -> Vec<Twin> {

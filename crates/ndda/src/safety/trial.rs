@@ -67,6 +67,9 @@ const SLOW: f64 = 0.1;
 const RESTING: u32 = 2;
 /// Elastic displacements that a push moves blocks by which half the wanted error times gravity slows down.
 const PUSHED: f64 = 20.0;
+/// Part of gravity that does so under changed loads, whatever error is asked for: a slower push is over before contact has vibrated once and given up
+/// what it presses a block in with beyond what it must bear.
+const STOPS_UNDER_LOADS: f64 = 0.015;
 /// How often blocks are pushed on that changed loads have wedged in, or that stand on springs, which give way to a push before they slip, and elastic displacements that a
 /// push has to move them by for another one.
 const MOST_PUSHES: u32 = 10;
@@ -294,9 +297,10 @@ impl Course<'_> {
         }
     }
 
-    /// √(2 a d), so that a = ½ error g stops a block after d = 20 u [m/s].
+    /// √(2 a d), so that a = ½ error g, or 0.015 g under changed loads, stops a block after d = 20 u [m/s].
     fn push_m_s(&self) -> f64 {
-        (self.error * self.start.gravity_m_s2 * PUSHED * self.start.elastic_m).sqrt()
+        let stops = if self.leans { STOPS_UNDER_LOADS } else { 0.5 * self.error };
+        (2.0 * stops * self.start.gravity_m_s2 * PUSHED * self.start.elastic_m).sqrt()
     }
 
     /// Adds the velocities with which blocks failed.

@@ -56,6 +56,10 @@ pub(super) fn read(record: &Record) -> Result<Prepared, ShakingError> {
     if !path.is_dir() && !asks_for_history {
         return Ok(record.prepared(Path::new(""))?);
     }
+    if let Some(unit) = record.unit {
+        let advice = "no unit for a history, whose velocities are in m/s";
+        return Err(ShakingError::Option { option: "unit", value: unit.symbol().into(), advice });
+    }
     let file = match path.is_dir() {
         true => OutputFolder::history_in(path).unwrap_or_else(|| path.join(OutputFolder::HISTORY)),
         false => path.to_path_buf(),
@@ -83,7 +87,6 @@ pub(super) fn read(record: &Record) -> Result<Prepared, ShakingError> {
     let pairs = time_s.windows(2).zip(velocity.windows(2));
     let rows: Vec<(f64, f64)> =
         pairs.map(|(t, v)| (0.5 * (t[0] + t[1]), record.factor * (v[1] - v[0]) / (t[1] - t[0]))).collect();
-    let peak = rows.iter().map(|row| row.1.abs()).fold(0.0, f64::max);
-    let told = format!("{}: {column}, {} rows; peak {peak:.4} m/s²", file.display(), rows.len());
-    Ok(Prepared { rows, told, gap: None })
+    let told = format!("{}: {column}, {} rows", file.display(), rows.len());
+    Ok(record.processed(&file, rows, told)?)
 }
