@@ -22,6 +22,8 @@ pub struct Invariants {
     pub damping_gain: f64,
     /// largest loss that does not come back when contact parts, over the peak energy.
     pub lasting_loss: f64,
+    /// largest energy that friction and bonds gave in all, over the peak energy; zero where their springs were stretched at the start and may give that back.
+    pub friction_gain: f64,
     /// largest lasting gain of the lighter block of a pair, over ½ m v V for the speed v of the impact and the largest
     /// speed V, or its largest energy of contact.
     pub block_gain: Worst,

@@ -43,6 +43,8 @@ pub struct Ledger {
     /// Least of it so far, and by how much it has grown again at most [J].
     least_restitution_work_j: f64,
     damping_gain_j: f64,
+    /// Largest work of friction [J]; none where its springs may give back what they took before the run.
+    friction_gain_j: Option<f64>,
     removed_j: f64,
     peak_energy_j: f64,
     /// Largest energy that blocks, contacts, springs and bolts stored [J].
@@ -81,6 +83,7 @@ impl Ledger {
             lasting_gain: 0.0,
             damping_gain: 0.0,
             lasting_loss: 0.0,
+            friction_gain: 0.0,
             block_gain: Worst::default(),
             block_loss: Worst::default(),
             unresolved_friction: Worst::default(),
@@ -134,6 +137,7 @@ impl Ledger {
             restitution_work_j: 0.0,
             least_restitution_work_j: 0.0,
             damping_gain_j: 0.0,
+            friction_gain_j: Some(0.0),
             removed_j: 0.0,
             peak_energy_j: 0.0,
             peak_stored_j: 0.0,
@@ -362,6 +366,7 @@ impl Ledger {
             lasting_gain: energy(self.lasting_gain_j),
             damping_gain: of_energy(self.damping_gain_j, damped_j),
             lasting_loss: energy(self.lasting_loss_j),
+            friction_gain: energy(self.friction_gain_j.unwrap_or(0.0)),
             block_gain,
             block_loss,
             unresolved_friction: self.blocks.unresolved_friction(scale_m_s, self.rounding_j),

@@ -76,6 +76,7 @@ impl Simulation {
         let (new, _) = self.look()?;
         self.audit.ledger.add_work(0.0, 0.0, new.total_j() - old.total_j(), 0.0);
         self.audit.ledger.add_jump_of_momentum(&old, &new);
+        self.note_stretched_springs();
         Ok(())
     }
 

@@ -56,9 +56,21 @@ impl Simulation {
         }
         let (stored_j, taken_j) = self.bolt_energies_j();
         (sample.bolt_j, sample.bolt_work_j) = (stored_j, -taken_j + 0.0);
+        if !self.audit.ledger.is_open() {
+            self.note_stretched_springs();
+        }
         let sample = self.audit.ledger.balance(sample, self.contact_bound().is_some());
         self.audit.stages.ledger_s += started.elapsed().as_secs_f64();
         Ok(sample)
+    }
+
+    /// Notes where springs of friction, or bonds that have touched, may give back what they took before.
+    pub(super) fn note_stretched_springs(&mut self) {
+        let memory = &self.state.contact;
+        let springs = memory.facets.iter().any(|facet| facet.shear_n != [0.0; 2]);
+        if springs || !(memory.facets.is_empty() || memory.bonds.is_empty()) {
+            self.audit.ledger.springs_are_stretched();
+        }
     }
 
     fn add_block_to(

@@ -125,6 +125,7 @@ impl Simulation {
         self.audit.ledger.add_work(0.0, 0.0, new.total_j() - old.total_j() + removed_j, 0.0);
         self.audit.ledger.add_removed(removed_j);
         self.audit.ledger.add_jump_of_momentum(&old, &new);
+        self.note_stretched_springs();
         Ok(())
     }
 

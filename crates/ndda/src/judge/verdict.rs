@@ -80,6 +80,7 @@ fn entries(simulation: &Simulation) -> Vec<Entry> {
     entries.extend(momentum(simulation));
     entries.extend(energy(simulation));
     entries.push(spurious_contact_energy(simulation));
+    entries.extend(energy_from_friction(simulation));
     entries.push(friction(simulation));
     entries.extend(friction_search(simulation));
     entries.extend(drawn_overlaps(simulation));
@@ -165,6 +166,17 @@ fn energy(simulation: &Simulation) -> [Entry; 3] {
         Entry::new("energy lost", shown(worst.energy_loss), Judgement::Fail, String::new()),
         warned("lasting energy error", lasting, MOST_ENERGY, reason),
     ]
+}
+
+/// Whether friction and bonds gave energy; shown only beyond the limit.
+fn energy_from_friction(simulation: &Simulation) -> Option<Entry> {
+    let gain = simulation.invariants().friction_gain;
+    let reason = format!(
+        "friction and bonds added {:.1} % of the largest energy, limit {:.0} %, although they can only take energy: reduce step_s",
+        100.0 * gain,
+        100.0 * MOST_ENERGY
+    );
+    (gain > MOST_ENERGY).then(|| warned("energy added by friction", gain, MOST_ENERGY, reason))
 }
 
 /// Whether friction was found in every step; said only where it was not.

@@ -2,7 +2,7 @@
 
 use super::Check;
 use crate::scene::code::Code;
-use crate::scene::{Pressure, Wet};
+use crate::scene::{Pressure, Water, Wet};
 
 /// Pressure of 1 cm of water [Pa].
 const LEAST_PA: f64 = 100.0;
@@ -23,6 +23,21 @@ impl Check<'_> {
             }
             self.pressure(&format!("{path}.pressure"), &water.pressure);
             self.factor(&format!("{path}.factor"), &water.factor);
+            self.sooner_than_weight(&path, water);
+        }
+    }
+
+    /// Water that acts before the weights that hold blocks down.
+    fn sooner_than_weight(&mut self, path: &str, water: &Water) {
+        let ramp_s = self.scene.gravity_ramp_s;
+        if ramp_s > 0.0 && water.factor.is_empty() {
+            let message = format!(
+                "acts in full at once, while gravity grows for {ramp_s} s: it may lift blocks and push them out before they have their weight"
+            );
+            let help = format!(
+                "write factor: [(time_s: 0, factor: 0), (time_s: {ramp_s}, factor: 1)], or `settle: ()` in place of gravity_ramp_s"
+            );
+            self.warn(Code::Inexact, path, message, help);
         }
     }
 

@@ -99,6 +99,9 @@ fn bare_number(text: &str, at: usize, path: &str) -> Option<String> {
     match path.rsplit('.').next()? {
         "friction" => Some(format!("write friction: (friction_deg: {number})")),
         "step" => Some(format!("write step_s: {number} for the length of a step")),
+        field if field.starts_with("factor[") => {
+            Some(format!("write each row as (time_s: {number}, factor: …)"))
+        }
         _ => None,
     }
 }
@@ -284,7 +287,7 @@ fn in_words(error: &RonError) -> String {
         RonError::ExpectedInteger | RonError::IntegerOutOfBounds => "expected a whole number",
         RonError::ExpectedString => "expected a text in quotes",
         RonError::ExpectedIdentifier => "expected one of the choices by its name",
-        RonError::SuggestRawIdentifier(_) => "expected one of the choices by its name, or another field",
+        RonError::SuggestRawIdentifier(_) => "expected the name of a field or of a choice",
         RonError::ExpectedBoolean => "expected true or false",
         RonError::ExpectedArray => "expected a list, which begins with `[`",
         RonError::ExpectedArrayEnd => "expected a comma, or the `]` that ends the list",

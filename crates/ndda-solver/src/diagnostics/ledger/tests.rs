@@ -14,6 +14,21 @@ fn energy_that_friction_took_is_not_a_loss() {
 }
 
 #[test]
+fn friction_that_gives_energy_is_said_unless_its_springs_were_stretched_before() {
+    let mut ledger = Ledger::new(Default::default(), BlockDiagnostics::default(), 0.0);
+    ledger.balance(Sample { kinetic_j: 10.0, ..Sample::default() }, true);
+    ledger.add_work(-2.0, 0.0, 0.0, 0.0);
+    // What springs took they may give back.
+    ledger.add_work(1.5, 0.0, 0.0, 0.0);
+    assert_eq!(ledger.invariants().friction_gain, 0.0);
+    ledger.add_work(1.5, 0.0, 0.0, 0.0);
+    assert_eq!(ledger.invariants().friction_gain, 0.1);
+    ledger.springs_are_stretched();
+    ledger.add_work(3.0, 0.0, 0.0, 0.0);
+    assert_eq!(ledger.invariants().friction_gain, 0.0);
+}
+
+#[test]
 fn what_explicit_contact_holds_back_is_not_lost_but_what_is_gone_after_it_is() {
     let mut ledger = Ledger::new(Default::default(), BlockDiagnostics::default(), 0.0);
     ledger.balance(Sample { kinetic_j: 10.0, ..Sample::default() }, true);

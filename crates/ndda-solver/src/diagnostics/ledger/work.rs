@@ -19,9 +19,15 @@ impl Ledger {
     /// Books the work of friction, of prescribed motions, of changing loads and of damping in a step [J].
     pub(crate) fn add_work(&mut self, friction_j: f64, motion_j: f64, load_j: f64, damping_j: f64) {
         self.friction_work_j += friction_j;
+        self.friction_gain_j = self.friction_gain_j.map(|gain_j| gain_j.max(self.friction_work_j));
         self.motion_work_j += motion_j;
         self.load_work_j += load_j;
         self.damping_work_j += damping_j;
+    }
+
+    /// Notes that springs of friction, and bonds, are stretched already, so that their work may be positive.
+    pub(crate) fn springs_are_stretched(&mut self) {
+        self.friction_gain_j = None;
     }
 
     /// Books the energy that left through quiet faces in a step [J].
