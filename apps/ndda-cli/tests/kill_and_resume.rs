@@ -236,3 +236,21 @@ fn a_scene_that_does_not_come_to_rest_leaves_a_summary_and_where_its_blocks_went
     assert!(summary["stopped_by"].as_str().expect("a cause").contains("[not-settled]"), "{summary}");
     assert_eq!(fs::read_dir(out.join("fields")).expect("frames").count(), 2);
 }
+
+#[test]
+fn a_scene_whose_first_step_to_rest_fails_ends_with_its_cause() {
+    let place = tempfile::tempdir().expect("a folder");
+    let (file, out) = (place.path().join("soft.ron"), place.path().join("out"));
+    // Contact so soft that the cube falls through: at the first look nothing has changed but that.
+    let text = r#"(title: "soft", time: (step_s: 2e-6, end_s: 1e-2), gravity_m_s2: (0, 0, -9.81),
+        materials: [(name: "rock", young_pa: 5e9, poisson: 0.2, density_kg_m3: 2500)],
+        blocks: [
+            (name: "cube", material: "rock", body: Rigid, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1))),
+            (name: "floor", material: "rock", body: Fixed, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), at_m: (0, 0, -1)),
+        ],
+        contact: Potential(penalty_pa: 1e3), settle: (damping: Local()))"#;
+    fs::write(&file, text).expect("a scene");
+    assert_eq!(run(&file.display().to_string(), &[], &out, "1").wait().expect("an end").code(), Some(4));
+    let summary = fs::read_to_string(out.join("summary.json")).expect("a summary");
+    assert!(summary.contains("stopped_by"), "{summary}");
+}

@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use ndda::driver::{BlockId, ChangeError, Driver, DriverRestoreError, DriverSnapshot, Vec3};
-use ndda::summary::Label;
 use numpy::{PyArray1, PyArray2, PyReadwriteArray2};
 use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
@@ -15,7 +14,7 @@ use crate::begin::{begun, saved};
 use crate::errors::{scene_error, stop_error};
 use crate::law::{self, Raised, own_or};
 use crate::scene::{Scene, warnings};
-use crate::watched::{pool, slice, watched, within};
+use crate::watched::{judged, pool, slice, within};
 
 /// A scene on its way through time; `ndda.Simulation` wraps it.
 #[pyclass(subclass, module = "ndda._core")]
@@ -265,7 +264,7 @@ impl Simulation {
     /// 'accurate'
     #[getter]
     fn label(&mut self, py: Python<'_>) -> PyResult<&'static str> {
-        Ok(self.judged(py)?.word.as_str())
+        Ok(judged(py, self.pool.as_ref(), &mut self.driver)?.word.as_str())
     }
 
     /// Why the label is not `accurate`.
@@ -278,7 +277,7 @@ impl Simulation {
     /// []
     #[getter]
     fn reasons(&mut self, py: Python<'_>) -> PyResult<Vec<String>> {
-        Ok(self.judged(py)?.reasons)
+        Ok(judged(py, self.pool.as_ref(), &mut self.driver)?.reasons)
     }
 
     /// CRC-32 of the state, as in `summary.json`.
@@ -387,12 +386,6 @@ impl Simulation {
         let Self { driver, pool, raised } = self;
         let done = py.detach(|| within(pool.as_ref(), || slice(driver, left)));
         done.map_err(|stop| own_or(raised, || stop_error(py, &stop)))
-    }
-
-    /// The label, for which steps may be taken again; other Python threads run meanwhile, and Ctrl-C ends it.
-    fn judged(&mut self, py: Python<'_>) -> PyResult<Label> {
-        let Self { driver, pool, .. } = self;
-        watched(py, |watch| within(pool.as_ref(), || driver.label_watched(&watch.stop, watch.tell)))
     }
 
     /// Refuses to show a state that a step left half done.

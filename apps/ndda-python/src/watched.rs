@@ -7,6 +7,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use ndda::driver::Driver;
+use ndda::summary::Label;
 use ndda_solver::StepError;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
@@ -85,6 +86,11 @@ pub fn within<R: Send>(pool: Option<&ThreadPool>, work: impl FnOnce() -> R + Sen
         Some(pool) => pool.install(work),
         None => work(),
     }
+}
+
+/// The label of a simulation, for which its steps may be taken again.
+pub fn judged(py: Python<'_>, pool: Option<&ThreadPool>, driver: &mut Driver) -> PyResult<Label> {
+    watched(py, |watch| within(pool, || driver.label_watched(&watch.stop, watch.tell)))
 }
 
 /// Steps until `left` is zero or the slice of time is over.

@@ -76,34 +76,6 @@ fn water_that_cannot_be_is_pointed_at() {
 }
 
 #[test]
-fn water_that_acts_before_the_weight_of_blocks_is_warned_of() {
-    let warned = |factor: &str| {
-        let water = format!(
-            "gravity_ramp_s: 0.2, water: [(on: Part(block: \"slider\", region: Set(\"z_min\")), pressure: Level(at_m: (0, 0, 1)){factor})],\n    contact: Potential("
-        );
-        let text = SCENE.replacen("contact: Potential(", &water, 1);
-        let loaded = load_text("s.ron", &text, &[], None).unwrap_or_else(|errors| panic!("{errors}"));
-        loaded
-            .warnings
-            .iter()
-            .any(|found| found.path == "water[0]" && found.message.contains("acts in full at once"))
-    };
-    assert!(warned(""));
-    assert!(!warned(", factor: [(time_s: 0, factor: 0), (time_s: 0.2, factor: 1)]"));
-}
-
-#[test]
-fn rows_without_names_are_told_what_their_values_are_called() {
-    let water = "water: [(on: Part(block: \"slider\", region: Set(\"z_min\")), pressure: Level(at_m: (0, 0, 1)), factor: [(0, 1)])],\n    contact: Potential(";
-    let errors = refused(&SCENE.replacen("contact: Potential(", water, 1)).to_string();
-    assert!(
-        errors.contains("expected the name of a field")
-            && errors.contains("write each row as (time_s: 0, factor: …)"),
-        "{errors}"
-    );
-}
-
-#[test]
 fn names_that_do_not_exist_are_pointed_at() {
     assert_refused(&[
         ("    title:", "    @titel:"),

@@ -13,6 +13,7 @@ use crate::error::StepError;
 use crate::step::Simulation;
 use crate::step::change::TakeOverError;
 use crate::step::follower::Places;
+use crate::step::snapshot::Snapshot;
 use crate::step::stage_state::StageState;
 use crate::step::state::State;
 
@@ -99,16 +100,10 @@ impl Simulation {
         let mut removed_j = self.energy_of(before, &released)?;
         let contact = before.contact_now()?;
         let snapshot = before.snapshot();
-        self.restore(snapshot.clone())?;
-        self.change_places(before, (&released, &added), start);
-        self.install_bolts(before);
-        self.take_over_contact(before)?;
+        self.enter(before, snapshot.clone(), (&released, &added), start)?;
         let rest = self.contact_now()?;
         // Undoes what this evaluation of contact has changed.
-        self.restore(snapshot)?;
-        self.change_places(before, (&released, &added), start);
-        self.install_bolts(before);
-        self.take_over_contact(before)?;
+        self.enter(before, snapshot, (&released, &added), start)?;
         self.stop_held_nodes(before);
         if start.over_s > 0.0 {
             let pairs = before.contact_between(&contact, &released);
@@ -127,6 +122,20 @@ impl Simulation {
         self.audit.ledger.add_jump_of_momentum(&old, &new);
         self.note_stretched_springs();
         Ok(())
+    }
+
+    /// Takes over the state of the simulation before, with its blocks and bolts in their new places.
+    fn enter(
+        &mut self,
+        before: &mut Self,
+        snapshot: Snapshot,
+        changed: (&[BlockId], &[BlockId]),
+        start: &StageStart,
+    ) -> Result<(), TakeOverError> {
+        self.restore(snapshot)?;
+        self.change_places(before, changed, start);
+        self.install_bolts(before);
+        Ok(self.take_over_contact(before)?)
     }
 
     /// Blocks that are absent now and were absent before as asked for.

@@ -212,17 +212,15 @@ impl fmt::Display for Guess {
         if let Some(twin_s) = self.twin_s {
             write!(
                 f,
-                ", {twin_s:.1} s more for a second run, which shows whether small differences grow, if three or more blocks move,"
+                ", {twin_s:.1} s more for a second run, which shows whether small differences grow, if three or more blocks move"
             )?;
         }
         if let Some(half_step_s) = self.half_step_s {
-            write!(
-                f,
-                ", {half_step_s:.1} s more for one with half the step, if a block hits several times,"
-            )?;
+            write!(f, ", {half_step_s:.1} s more for one with half the step, if a block hits several times")?;
         }
         if let Some(bytes) = self.memory_bytes {
-            write!(f, " and {} of memory", readable(bytes))?;
+            let comma = if self.half_step_s.is_some() { "," } else { "" };
+            write!(f, "{comma} and {} of memory", readable(bytes))?;
         }
         write!(f, "; it would write")?;
         for file in &self.files {

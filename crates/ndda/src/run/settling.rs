@@ -95,9 +95,14 @@ impl Run {
             Outputs::new((&loaded.scene, simulation), (monitors, None), place, &mut [], course)?;
         let now = simulation.snapshot();
         let built = self.built.take().map(|built| simulation.whole(&built));
-        let states = built.into_iter().chain([now]);
-        for state in states {
+        let mut shown_s = None;
+        for state in built.into_iter().chain([now]) {
             simulation.restore(state).expect("it is of this simulation");
+            let time_s = simulation.time_s();
+            // A first step of settling that fails leaves time where it was.
+            if shown_s.replace(time_s) == Some(time_s) {
+                continue;
+            }
             let report = StepReport::default();
             match ndda_solver::show(simulation, settled.steps, &report, &mut [&mut outputs]) {
                 Ok(_) => {}

@@ -112,3 +112,37 @@ impl Check<'_> {
         self.error(path, message, "water in joints carries no suction");
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::read::load_text;
+
+    const SCENE: &str = include_str!("../../../tests/scene.ron");
+
+    #[test]
+    fn water_that_acts_before_the_weight_of_blocks_is_warned_of() {
+        let warned = |factor: &str| {
+            let water = format!(
+                "gravity_ramp_s: 0.2, water: [(on: Part(block: \"slider\", region: Set(\"z_min\")), pressure: Level(at_m: (0, 0, 1)){factor})],\n    contact: Potential("
+            );
+            let text = SCENE.replacen("contact: Potential(", &water, 1);
+            // The closed form of that scene has no ramp, which is said beside the warning.
+            load_text("s.ron", &text, &[], None).unwrap_err().to_string().contains("acts in full at once")
+        };
+        assert!(warned(""));
+        assert!(!warned(", factor: [(time_s: 0, factor: 0), (time_s: 0.2, factor: 1)]"));
+    }
+
+    #[test]
+    fn rows_without_names_are_told_what_their_values_are_called() {
+        let water = "water: [(on: Part(block: \"slider\", region: Set(\"z_min\")), pressure: Level(at_m: (0, 0, 1)), factor: [(0, 1)])],\n    contact: Potential(";
+        let errors = load_text("s.ron", &SCENE.replacen("contact: Potential(", water, 1), &[], None)
+            .unwrap_err()
+            .to_string();
+        assert!(
+            errors.contains("expected the name of a field")
+                && errors.contains("write each row as (time_s: 0, factor: …)"),
+            "{errors}"
+        );
+    }
+}
