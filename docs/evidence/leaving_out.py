@@ -63,7 +63,7 @@ def instructions(ndda, scene, settings, steps):
     """Instructions of a whole run."""
     with tempfile.TemporaryDirectory() as folder:
         command = ["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null"]
-        command += [ndda, "run", scene, "--out", f"{folder}/out", "--quiet", "--threads", "1"]
+        command += [ndda, "run", scene, "--out", f"{folder}/out", "--quiet", "--threads", "1", "--sensitivity", "never"]
         for setting in [*settings, f"time.end_s={steps * 1e-4}"]:
             command += ["--set", setting]
         done = subprocess.run(command, capture_output=True, text=True, check=False)
