@@ -148,6 +148,11 @@ impl Simulation {
         self.audit.ledger.speed_scale_m_s()
     }
 
+    /// Speed that a block has if all energy which rounding may have brought by now is its own [m/s].
+    pub fn rounding_speed_m_s(&self, block: BlockId) -> f64 {
+        (2.0 * self.audit.ledger.rounding_j() / self.shape(block).operator.mass_kg).sqrt()
+    }
+
     /// Time since energies and momenta were measured by [`sample`](Self::sample) [s].
     pub fn unsampled_s(&self) -> f64 {
         self.audit.ledger.since_sample_s(self.time_s())

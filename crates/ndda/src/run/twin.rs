@@ -378,6 +378,14 @@ mod tests {
     }
 
     #[test]
+    fn blocks_that_rounding_alone_moves_are_not_sensitive() {
+        let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/extreme/at_rest.ron");
+        let run = Run::new(Model::open(&file, &[]).unwrap()).sensitivity(Sensitivity::Always);
+        let summary = run.finish(&mut []).unwrap().summary;
+        assert_eq!(summary.label.word, LabelWord::Accurate, "{:?}", summary.label.reasons);
+    }
+
+    #[test]
     fn two_blocks_have_no_twin_unless_one_is_asked_for() {
         let sliding = ["at_m: (0, 0, 0)"];
         for (sensitivity, has_twin) in [(Sensitivity::Auto, false), (Sensitivity::Always, true)] {

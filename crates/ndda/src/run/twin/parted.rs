@@ -94,7 +94,8 @@ pub(super) fn parted(
         let apart_m = farthest_m(simulation, block, &state.position, &ended.0);
         let faster_m_s = faster_m_s(simulation, block, (&state.position, &state.velocity), ended);
         let place = apart_m / (away * height_m(simulation, block) + drift_m);
-        let speed = if apart_m > drift_m { faster_m_s / (faster * largest_m_s) } else { 0.0 };
+        let allowed_m_s = faster * largest_m_s + simulation.rounding_speed_m_s(block);
+        let speed = if apart_m > drift_m { faster_m_s / allowed_m_s } else { 0.0 };
         Difference { block, apart_m, faster_m_s, place, speed }
     };
     let all: Vec<Difference> = simulation.blocks().ids().map(differs).collect();

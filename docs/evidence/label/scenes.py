@@ -1,0 +1,84 @@
+#!/usr/bin/env python3
+"""Whether scenes that are labelled accurate stay so with half the step and from a slightly different start: docs/verification/stability.md.
+
+  docs/evidence/label/scenes.py [NDDA] [--limit SECONDS] [SCENE ...]    (default: target/release/ndda, 300 s, all scenes)
+
+Runs every scene as it is with `--sensitivity always`, which repeats an accurate run from a start that differs by 1e-4 of the largest speed, a hundred thousand times
+1e-9, and with half the step. What is no longer accurate then is run as users run it; where its label is still accurate, it does not survive. Keeps a row of each scene
+in scenes.csv beside this script; scenes in stages are not repeated, and those that take longer than the limit are not judged.
+"""
+
+import argparse
+import csv
+import json
+import subprocess
+import tempfile
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[3]
+KEPT = Path(__file__).resolve().parent / "scenes.csv"
+COLUMNS = ["scene", "found", "label", "reason", "spent_s"]
+REPEATED = ("a start that differs", "a run with half the step", "a second run")
+
+
+def summary_of(ndda, scene, sensitivity, limit_s):
+    """What a run says; none if it takes too long or is no run."""
+    with tempfile.TemporaryDirectory() as folder:
+        command = [ndda, "run", str(scene), "--out", f"{folder}/out", "--quiet", "--threads", "1", "--sensitivity", sensitivity, "--set", "output.frames=0"]
+        try:
+            subprocess.run(command, check=False, capture_output=True, timeout=limit_s)
+        except subprocess.TimeoutExpired:
+            return None
+        file = Path(folder, "out", "summary.json")
+        return json.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
+
+
+def row(ndda, scene, limit_s):
+    began = time.monotonic()
+    summary = summary_of(ndda, scene, "always", limit_s)
+    found, label, reason = "not judged: too long", "", ""
+    if summary == {}:
+        found = "no run"
+    elif summary is not None:
+        label, reason = summary["label"]["word"], "; ".join(summary["label"]["reasons"])
+        repeated = any(stage == "sensitivity" for stage in summary["stages_s"])
+        if label == "accurate":
+            found = "stays accurate" if repeated else "accurate, not repeated"
+        elif not reason.startswith(REPEATED):
+            found = "not accurate by itself"
+        else:
+            usual = summary_of(ndda, scene, "auto", limit_s)
+            is_found = usual is not None and usual["label"]["word"] != "accurate"
+            found = "found by ndda run" if is_found else "does not survive"
+    name = str(scene.relative_to(ROOT / "scenes"))
+    return dict(zip(COLUMNS, [name, found, label, reason, f"{time.monotonic() - began:.0f}"]))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("ndda", nargs="?", default=str(ROOT / "target" / "release" / "ndda"))
+    parser.add_argument("--limit", type=float, default=300, metavar="SECONDS")
+    parser.add_argument("scenes", nargs="*", type=Path)
+    args = parser.parse_args()
+    scenes = args.scenes or sorted((ROOT / "scenes").rglob("*.ron"))
+    kept = {}
+    if KEPT.exists():
+        with KEPT.open(encoding="utf-8") as file:
+            kept = {row["scene"]: row for row in csv.DictReader(file)}
+    for scene in scenes:
+        found = row(str(Path(args.ndda).resolve()), scene.resolve(), args.limit)
+        kept[found["scene"]] = found
+        print(f"{found['scene']}: {found['found']} ({found['label']}, {found['spent_s']} s) {found['reason'][:100]}", flush=True)
+        with KEPT.open("w", encoding="utf-8", newline="") as file:
+            writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
+            writer.writeheader()
+            writer.writerows(kept[name] for name in sorted(kept))
+    counts = {}
+    for known in kept.values():
+        counts[known["found"]] = counts.get(known["found"], 0) + 1
+    print("; ".join(f"{found}: {count}" for found, count in sorted(counts.items())))
+
+
+if __name__ == "__main__":
+    main()
