@@ -3,7 +3,7 @@
 //! A block that is held moves elastically, by u; one that is not accelerates by a part of gravity that grows with how far the factor
 //! is beyond the limit. A trial lasts until an acceleration of 2 % of the wanted error times gravity would have moved a block by 10 u.
 //! It *fails* as soon as a block has gone 30 u and farther in each third of the time than in the one before; it *stands*
-//! if all blocks have come to rest, also where they went farther before, or if at its end each block that has gone so far has gone 10 % less in each third of
+//! if all blocks have come to rest, also where they went farther before, or if at its end each block that has gone so far has gone 9 % less in each third of
 //! the time than in the one before, and no other is faster than that acceleration would have made it. Else it goes on for up to four times as long, and then is *undecided*.
 //!
 //! Springs that are far softer than contact, as bolts are, or a column that leans on its edge let a block accelerate for 30 u, too, and hold it later. So the failure at

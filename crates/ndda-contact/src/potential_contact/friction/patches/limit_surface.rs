@@ -14,7 +14,7 @@
 use ndda_mesh::{Mat3, Vec3};
 use pulp::{Arch, Simd, WithSimd};
 
-/// Cells along and across a patch whose spin matters, by its aspect ratio: force and torque are then right to 4 % of μN, the torque
+/// Cells along and across a patch whose spin matters, by its aspect ratio: on an evenly pressed rectangle force and torque are then right to 4 % of μN, the torque
 /// of a pure twist to 0.5 %.
 const CELLS: [(f64, [u32; 2]); 3] = [(1.5, [4, 4]), (4.5, [8, 2]), (f64::INFINITY, [16, 2])];
 /// Cells along a patch that are summed side by side, so that processors take several at once.
