@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Whether scenes that are labelled accurate stay so with half the step and from a slightly different start: docs/verification/stability.md.
 
-  docs/evidence/label/scenes.py [NDDA] [--limit SECONDS] [SCENE ...]    (default: target/release/ndda, 300 s, all scenes)
+  docs/evidence/label/scenes.py [NDDA [SCENE ...]] [--limit SECONDS]    (default: target/release/ndda, all scenes, 300 s)
 
 Runs every scene as it is with `--sensitivity always`, which repeats an accurate run from a start that differs by 1e-4 of the largest speed, a hundred thousand times
 1e-9, and with half the step. What is no longer accurate then is run as users run it; where its label is still accurate, it does not survive. Keeps a row of each scene
