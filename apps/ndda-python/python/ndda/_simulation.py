@@ -596,7 +596,7 @@ class Simulation(_core.Simulation):
         return ax
 
     def __repr__(self) -> str:
-        """Title, time and label in short."""
+        """Title, time and steps in short."""
         return f"<ndda.Simulation {self.scene.title!r}, t = {self.time_s:g} s, step {self.step_count} of {self.steps}>"
 
     def _blocks(self, pattern: str) -> list[int]:

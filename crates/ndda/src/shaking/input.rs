@@ -87,6 +87,6 @@ pub(super) fn read(record: &Record) -> Result<Prepared, ShakingError> {
     let pairs = time_s.windows(2).zip(velocity.windows(2));
     let rows: Vec<(f64, f64)> =
         pairs.map(|(t, v)| (0.5 * (t[0] + t[1]), record.factor * (v[1] - v[0]) / (t[1] - t[0]))).collect();
-    let told = format!("{}: {column}, {} rows", file.display(), rows.len());
+    let told = format!("{}: {column}, {} rows, less the velocity at the start", file.display(), rows.len());
     Ok(record.processed(&file, rows, told)?)
 }
