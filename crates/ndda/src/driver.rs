@@ -173,7 +173,7 @@ impl Driver {
         if let Some(error) = &self.stopped {
             return Err(error.clone());
         }
-        self.course.goes_on();
+        self.course.forget_label();
         let simulation = &mut self.model.simulation;
         let mut done = simulation.step().map(|_| ());
         if done.is_ok() && is_due(simulation.state().step, self.steps, self.rows) {
@@ -228,8 +228,9 @@ impl Driver {
     /// # Errors
     /// [`DriveError`]; nothing has changed then.
     pub fn set_force(&mut self, block: BlockId, force_n: Vec3) -> Result<(), DriveError> {
-        self.course.is_disturbed();
-        self.model.simulation.set_force(block, force_n)
+        self.model.simulation.set_force(block, force_n)?;
+        self.course.note_change();
+        Ok(())
     }
 
     /// Gives a block a velocity [m/s] and a spin [rad/s] now ([`Simulation::set_velocity`]).
@@ -242,8 +243,9 @@ impl Driver {
         velocity_m_s: Vec3,
         spin_rad_s: Vec3,
     ) -> Result<(), DriveError> {
-        self.course.is_disturbed();
-        self.model.simulation.set_velocity(block, velocity_m_s, spin_rad_s)
+        self.model.simulation.set_velocity(block, velocity_m_s, spin_rad_s)?;
+        self.course.note_change();
+        Ok(())
     }
 
     /// A copy of all that changes.
@@ -269,7 +271,7 @@ impl Driver {
             self.put(model);
         }
         self.stopped.clone_from(&snapshot.stopped);
-        self.course.goes_on();
+        self.course.forget_label();
         self.course.is_undisturbed = snapshot.is_undisturbed;
         let step = self.simulation().state().step;
         self.history.retain(|sample| sample.step <= step);

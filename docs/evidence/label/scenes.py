@@ -14,6 +14,7 @@ import json
 import subprocess
 import tempfile
 import time
+from collections import Counter
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -74,9 +75,7 @@ def main():
             writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
             writer.writeheader()
             writer.writerows(kept[name] for name in sorted(kept))
-    counts = {}
-    for known in kept.values():
-        counts[known["found"]] = counts.get(known["found"], 0) + 1
+    counts = Counter(known["found"] for known in kept.values())
     print("; ".join(f"{found}: {count}" for found, count in sorted(counts.items())))
 
 

@@ -47,7 +47,7 @@ impl Driver {
         }
         model.simulation.take_over(&mut self.model.simulation)?;
         self.put(model);
-        self.course.is_disturbed();
+        self.course.note_change();
         Ok(())
     }
 }

@@ -9,7 +9,7 @@ use crate::judge::verdict;
 use crate::run::{Sensitivity, twin};
 use crate::summary::{Label, LabelWord};
 
-/// What the label after the last step must know of the way there.
+/// What decides, beside the state, whether the steps are taken again for the label.
 pub(super) struct Course {
     /// The simulation as it was built.
     built: StartSnapshot,
@@ -24,23 +24,23 @@ impl Course {
         Self { built, is_undisturbed, judged: None }
     }
 
-    /// Another state needs another label.
-    pub fn goes_on(&mut self) {
+    /// Forgets the label that was given, which is of another state.
+    pub fn forget_label(&mut self) {
         self.judged = None;
     }
 
-    /// Something but a step has changed the simulation.
-    pub fn is_disturbed(&mut self) {
+    /// Notes that something other than a step has changed the simulation.
+    pub fn note_change(&mut self) {
         self.is_undisturbed = false;
-        self.judged = None;
+        self.forget_label();
     }
 }
 
 impl Driver {
     /// The simulation's label so far: a sample is taken first, so that nothing since the last one is missed.
     ///
-    /// After the last step it is that of a run, which takes an accurate scene's steps again from a slightly different start or with half the step
-    /// where its blocks hit several times or disturb each other; asked for once more, it is at hand. Before the last step, after
+    /// After the last step the label is that of a run: where blocks hit several times or disturb each other, the steps of an accurate scene are taken
+    /// again, from a slightly different start or with half the step. The result is kept until the next step. Before the last step, after
     /// [`set_force`](Self::set_force), [`set_velocity`](Self::set_velocity) or [`change`](Self::change), and with parts of the caller's
     /// own, it judges the steps that were taken.
     pub fn label(&mut self) -> Label {
@@ -130,6 +130,8 @@ mod tests {
         let file = folder.path().join("state");
         driver.save(&file).unwrap();
         assert_eq!(at_end(Driver::load(&file, None).unwrap()).label().word, LabelWord::Inaccurate);
+        driver.set_velocity(BlockId(0), Vec3::z(), Vec3::zeros()).unwrap_err();
+        assert!(driver.snapshot().is_undisturbed, "a refused change has changed nothing");
         driver.set_velocity(BlockId(1), Vec3::new(0.0, 0.0, 0.1), Vec3::zeros()).unwrap();
         let mut driver = at_end(driver);
         assert_eq!(driver.label().word, LabelWord::Accurate, "{:?}", driver.label().reasons);

@@ -67,8 +67,8 @@ const SLOW: f64 = 0.1;
 const RESTING: u32 = 2;
 /// Elastic displacements that a push moves blocks by which half the wanted error times gravity slows down.
 const PUSHED: f64 = 20.0;
-/// Part of gravity that does so under changed loads, whatever error is asked for: a slower push is over before contact has vibrated once and given up
-/// what it presses a block in with beyond what it must bear.
+/// Part of gravity that stops a push after so many displacements under changed loads, whatever error is asked for. A slower push ends before contact has
+/// vibrated once, and leaves a block wedged in by more force than its loads need.
 const STOPS_UNDER_LOADS: f64 = 0.015;
 /// How often blocks are pushed on that changed loads have wedged in, or that stand on springs, which give way to a push before they slip, and elastic displacements that a
 /// push has to move them by for another one.

@@ -18,7 +18,7 @@ fn friction_that_gives_energy_is_said_unless_its_springs_were_stretched_before()
     let mut ledger = Ledger::new(Default::default(), BlockDiagnostics::default(), 0.0);
     ledger.balance(Sample { kinetic_j: 10.0, ..Sample::default() }, true);
     ledger.add_work(-2.0, 0.0, 0.0, 0.0);
-    // What springs took they may give back.
+    // Springs may give back the energy that they took.
     ledger.add_work(1.5, 0.0, 0.0, 0.0);
     assert_eq!(ledger.invariants().friction_gain, 0.0);
     ledger.add_work(1.5, 0.0, 0.0, 0.0);

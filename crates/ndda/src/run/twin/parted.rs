@@ -14,7 +14,7 @@ use crate::summary::LabelWord;
 /// Parts of a tetrahedron's height by which blocks of a twin may end away, and of the largest speed by which their velocities may differ: of one that
 /// is pushed, a third of what an accurate label allows, and all of it.
 const OF_PUSH: (f64, f64) = (0.03, 0.01);
-/// The same of one with half the step: half of what the label allows, since its errors are at most half of those of the run.
+/// The same two limits for a twin with half the step: half of what an accurate label allows, since its errors are at most half of those of the run.
 const OF_STEP: (f64, f64) = (0.05, 0.005);
 /// The most by which the label advises to divide a step.
 const MOST: f64 = 64.0;
