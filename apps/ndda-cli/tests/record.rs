@@ -78,23 +78,47 @@ fn what_is_no_record_is_refused_with_its_cure() {
         (vec!["table.csv"], "there is no column `acceleration_m_s2`; the first line names time_s, ax, ay"),
         (vec!["pulse.at2", "--column", "ax"], "an .at2 file has no columns: leave `column` out"),
         (vec!["table.csv"], ": set `column` (--column) to the one that holds accelerations"),
-        (vec!["table.csv", "--column", "ax", "--filter", "5,1"], "the lower one first"),
-        (vec!["table.csv", "--column", "ax", "--resample", "5"], "would make 1 rows"),
-        (
-            vec!["table.csv", "--column", "ax", "--slope", "40", "--friction", "30"],
-            "below that of --friction",
-        ),
-        (vec!["table.csv", "--column", "ax", "--damping", "1.5"], "from 0 to below 1"),
-        (vec!["table.csv", "--column", "ax", "--factor", "nan"], "--factor NaN: write a finite number"),
-        (
-            vec!["table.csv", "--column", "crest.velocity_x_m_s", "--unit", "g"],
-            "write no unit for a history, whose velocities are in m/s",
-        ),
+        (vec!["table.csv", "--column", "ax", "--resample", "5"], "`resample_s` (--resample)"),
     ] {
         let done = record(folder.path(), &args);
         let said = String::from_utf8_lossy(&done.stderr).into_owned();
         assert!(done.status.code() == Some(3) && said.contains(word), "{args:?}: {said}");
     }
+}
+
+#[test]
+fn options_of_records_that_are_out_of_range_are_errors_of_the_command_line() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("table.csv"), "time_s,ax,ay\n0,1,2\n1,1,2\n").unwrap();
+    for (args, word) in [
+        (vec!["--filter", "5,1"], "the lower one first"),
+        (vec!["--slope", "40", "--friction", "30"], "below that of --friction"),
+        (vec!["--damping", "1.5"], "from 0 to below 1"),
+        (vec!["--factor", "nan"], "--factor NaN: write a finite number"),
+        (
+            vec!["--column", "crest.velocity_x_m_s", "--unit", "g"],
+            "write no unit for a history, whose velocities are in m/s",
+        ),
+    ] {
+        let column: &[&str] = if args.contains(&"--column") { &[] } else { &["--column", "ax"] };
+        let done = record(folder.path(), &[&["table.csv"], column, &args].concat());
+        let said = String::from_utf8_lossy(&done.stderr).into_owned();
+        assert!(done.status.code() == Some(2) && said.contains(word), "{args:?}: {said}");
+    }
+}
+
+#[test]
+fn a_peak_that_resampling_loses_is_told_and_a_wrong_picture_leaves_no_tables() {
+    let folder = tempfile::tempdir().unwrap();
+    let rows: String = (0..40).map(|i| format!("{},{}\n", 0.01 * f64::from(i), i32::from(i == 13))).collect();
+    std::fs::write(folder.path().join("blow.csv"), format!("time_s,acceleration_m_s2\n{rows}")).unwrap();
+    let told = |spacing: &str| {
+        let done = record(folder.path(), &["blow.csv", "--resample", spacing]);
+        String::from_utf8_lossy(&done.stdout).contains("the peak of 1.0000 m/s² is lost")
+    };
+    assert_eq!([told("0.1"), told("0.005")], [true, false]);
+    let done = record(folder.path(), &["blow.csv", "-o", "blow.bmp"]);
+    assert!(!done.status.success() && !folder.path().join("blow.motion.csv").exists());
 }
 
 #[test]

@@ -60,7 +60,7 @@ pub enum ShakingError {
         /// The history.
         file: PathBuf,
         /// The problem.
-        reason: &'static str,
+        reason: String,
         /// Velocities that it has.
         names: String,
     },
@@ -127,12 +127,12 @@ pub fn make(request: &Request) -> Result<Shaking, ShakingError> {
         picture: None,
         tables: [request.out.with_extension("motion.csv"), request.out.with_extension("spectrum.csv")],
     };
-    report::write_tables(&shaking, &motion)?;
     #[cfg(feature = "plots")]
     let shaking = {
         picture::draw(&shaking, &motion, &request.out)?;
         Shaking { picture: Some(request.out.clone()), ..shaking }
     };
+    report::write_tables(&shaking, &motion)?;
     Ok(shaking)
 }
 

@@ -2,10 +2,9 @@
 
 use ndda::shaking::{ShakingError, make, tell};
 
-use crate::args::RecordArgs;
-use crate::exit;
 use crate::terminal::console::say;
 use crate::terminal::events::{self, Events};
+use crate::{args::RecordArgs, exit};
 
 /// Runs `ndda record`; returns the exit code.
 pub fn record(args: &RecordArgs) -> u8 {
@@ -19,6 +18,7 @@ pub fn record(args: &RecordArgs) -> u8 {
             exit::DONE
         }
         Err(ShakingError::Write(error)) => events.fail(exit::of_write(&error), &error.to_string()),
+        Err(error @ ShakingError::Option { .. }) => events.fail(exit::USAGE, &error.to_string()),
         Err(error) => events.fail(exit::BAD_INPUT, &error.to_string()),
     }
 }

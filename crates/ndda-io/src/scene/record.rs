@@ -31,7 +31,7 @@ pub enum RecordError {
     },
     /// A spacing that leaves too few rows or makes too many.
     #[error(
-        "{}: `resample_s`, or the shortest spacing of {given} rows, would make {rows} rows: give a spacing that makes between 2 and {MOST_ROWS}", file.display()
+        "{}: `resample_s` (--resample), or the shortest spacing of {given} rows, would make {rows} rows: give a spacing that makes between 2 and {MOST_ROWS}", file.display()
     )]
     Spacing {
         /// The file.
@@ -55,6 +55,9 @@ pub enum RecordError {
 
 /// Spacings that differ by less than this part are even.
 const EVEN: f64 = 1e-4;
+
+/// A peak that falls below this part of itself is lost between rows that are further apart.
+const KEPT: f64 = 0.95;
 
 /// Most rows of a record that is brought to an even spacing.
 const MOST_ROWS: usize = 10_000_000;
@@ -187,11 +190,17 @@ impl Record {
             if new > MOST_ROWS {
                 return Err(spacing(new));
             }
+            let given_m_s2 = peak_m_s2(&rows);
             rows = process::resampled(&rows, spacing_s);
             if rows.len() < 2 {
                 return Err(spacing(rows.len()));
             }
             told += &format!(", brought to {} rows of {spacing_s} s", rows.len());
+            if peak_m_s2(&rows) < KEPT * given_m_s2 {
+                told += &format!(
+                    ", between which the peak of {given_m_s2:.4} m/s² is lost: resample to a shorter step"
+                );
+            }
         }
         if let Some(corners) = self.filter_hz {
             process::filtered(&mut rows, corners);

@@ -193,7 +193,7 @@ fn friction_search(simulation: &Simulation) -> Option<Entry> {
 /// Whether blocks overlap as they are drawn, so that contact throws them apart; said only where it does.
 fn drawn_overlaps(simulation: &Simulation) -> Option<Entry> {
     let thrown = simulation.invariants().drawn_overlap_m_s;
-    let part = thrown.value / simulation.speed_scale_m_s();
+    let part = thrown.value / simulation.speed_scale_m_s().max(thrown.value).max(f64::MIN_POSITIVE);
     let reason = format!(
         "block `{}` overlaps others as drawn, and contact throws it away at {:.2e} m/s, {:.1} % of the largest speed, limit {:.0} %: move it, or let the scene come to rest first, {SETTLE}",
         name(simulation, thrown),

@@ -70,14 +70,15 @@ pub(super) fn read(record: &Record) -> Result<Prepared, ShakingError> {
             table.names.iter().filter(|name| name.contains(VELOCITY)).map(String::as_str).collect();
         names.join(", ")
     };
-    let lost = |file: PathBuf, reason| ShakingError::Column { file, reason, names: known() };
+    let lost =
+        |file: PathBuf, reason: &str| ShakingError::Column { file, reason: reason.into(), names: known() };
     let Some(column) = &record.column else { return Err(lost(file, "a history has several motions")) };
     if !column.contains(VELOCITY) {
-        return Err(lost(file, "this column is not a velocity of a monitor"));
+        return Err(lost(file, &format!("column `{column}` is not a velocity of a monitor")));
     }
     let place = |name: &str| table.names.iter().position(|known| known == name);
     let (Some(time), Some(velocity)) = (place("time_s"), place(column)) else {
-        return Err(lost(file, "there is no such column"));
+        return Err(lost(file, &format!("there is no column `{column}`")));
     };
     let (time_s, velocity) = (&table.columns[time], &table.columns[velocity]);
     if time_s.len() < 3 {

@@ -2,10 +2,12 @@
 
 use super::Check;
 use crate::scene::code::Code;
-use crate::scene::{Pressure, Water, Wet};
+use crate::scene::{FactorRow, Pressure, Water, Wet};
 
 /// Pressure of 1 cm of water [Pa].
 const LEAST_PA: f64 = 100.0;
+/// Part of a factor by which sums of a few numbers round at most.
+const ROUNDING: f64 = 1e-12;
 /// What pressures are in.
 const UNIT: &str = "the unit is pascal: 1 m of water is 9810, 10 kPa is 10e3";
 
@@ -27,18 +29,20 @@ impl Check<'_> {
         }
     }
 
-    /// Water that acts before the weights that hold blocks down.
+    /// Water that grows sooner than the weights that hold blocks down.
     fn sooner_than_weight(&mut self, path: &str, water: &Water) {
         let ramp_s = self.scene.gravity_ramp_s;
-        if ramp_s > 0.0 && water.factor.is_empty() {
-            let message = format!(
-                "acts in full at once, while gravity grows for {ramp_s} s: it may lift blocks and push them out before they have their weight"
-            );
-            let help = format!(
-                "write factor: [(time_s: 0, factor: 0), (time_s: {ramp_s}, factor: 1)], or `settle: ()` in place of gravity_ramp_s"
-            );
-            self.warn(Code::Inexact, path, message, help);
+        if !(ramp_s > 0.0 && ramp_s.is_finite() && is_ahead(&water.factor, ramp_s)) {
+            return;
         }
+        let acts = if water.factor.is_empty() { "acts in full at once" } else { "grows sooner than gravity" };
+        let message = format!(
+            "{acts}, while gravity grows for {ramp_s} s: it may lift blocks and push them out before they have their weight"
+        );
+        let help = format!(
+            "write factor: [(time_s: 0, factor: 0), (time_s: {ramp_s}, factor: 1)], or `settle: ()` in place of gravity_ramp_s"
+        );
+        self.warn(Code::Inexact, path, message, help);
     }
 
     fn wet_joint(&mut self, path: String, name: &str) {
@@ -113,6 +117,24 @@ impl Check<'_> {
     }
 }
 
+/// Whether a factor is above f₁ t/t₁ somewhere before t₁, where it is f₁: linear between its rows, it is so at one of them, or at the start.
+fn is_ahead(rows: &[FactorRow], ramp_s: f64) -> bool {
+    let final_factor = factor_at(rows, ramp_s);
+    let early = rows.iter().map(|row| row.time_s).filter(|time_s| (0.0..ramp_s).contains(time_s));
+    let most = |time_s: f64| final_factor * time_s / ramp_s + ROUNDING * final_factor.abs();
+    std::iter::once(0.0).chain(early).any(|time_s| factor_at(rows, time_s) > most(time_s))
+}
+
+/// A factor at a time: linear between rows, that of the first and of the last row beyond them, 1 without rows.
+fn factor_at(rows: &[FactorRow], time_s: f64) -> f64 {
+    let next = rows.partition_point(|row| row.time_s <= time_s);
+    match (next.checked_sub(1).and_then(|last| rows.get(last)), rows.get(next)) {
+        (Some(a), Some(b)) => a.factor + (b.factor - a.factor) * (time_s - a.time_s) / (b.time_s - a.time_s),
+        (Some(row), None) | (None, Some(row)) => row.factor,
+        (None, None) => 1.0,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use crate::read::load_text;
@@ -120,17 +142,32 @@ mod tests {
     const SCENE: &str = include_str!("../../../tests/scene.ron");
 
     #[test]
-    fn water_that_acts_before_the_weight_of_blocks_is_warned_of() {
+    fn water_that_grows_sooner_than_the_weight_of_blocks_is_warned_of() {
         let warned = |factor: &str| {
             let water = format!(
                 "gravity_ramp_s: 0.2, water: [(on: Part(block: \"slider\", region: Set(\"z_min\")), pressure: Level(at_m: (0, 0, 1)){factor})],\n    contact: Potential("
             );
             let text = SCENE.replacen("contact: Potential(", &water, 1);
             // The closed form of that scene has no ramp, which is said beside the warning.
-            load_text("s.ron", &text, &[], None).unwrap_err().to_string().contains("acts in full at once")
+            let told = load_text("s.ron", &text, &[], None).unwrap_err().to_string();
+            ["acts in full at once", "grows sooner than gravity"]
+                .into_iter()
+                .find(|words| told.contains(words))
         };
-        assert!(warned(""));
-        assert!(!warned(", factor: [(time_s: 0, factor: 0), (time_s: 0.2, factor: 1)]"));
+        assert_eq!(warned(""), Some("acts in full at once"));
+        for (rows, is_ahead) in [
+            ("(time_s: 0, factor: 0), (time_s: 0.2, factor: 1)", false),
+            ("(time_s: 0, factor: 0), (time_s: 0.2, factor: 1.5)", false),
+            ("(time_s: 0.1, factor: 0), (time_s: 0.4, factor: 1)", false),
+            ("(time_s: 0.3, factor: 0), (time_s: 0.4, factor: 1)", false),
+            ("(time_s: 0, factor: 0), (time_s: 0.1, factor: 1)", true),
+            ("(time_s: 0, factor: 0.2), (time_s: 0.2, factor: 1)", true),
+            ("(time_s: 0, factor: 0), (time_s: 0.1, factor: 1), (time_s: 0.15, factor: 0)", true),
+            ("(time_s: 0, factor: 1)", true),
+        ] {
+            let found = warned(&format!(", factor: [{rows}]"));
+            assert_eq!(found, is_ahead.then_some("grows sooner than gravity"), "{rows}");
+        }
     }
 
     #[test]
