@@ -11,8 +11,8 @@ use crate::search::{Found, text_of};
 const DISTURBED: f64 = 1e-9;
 /// Rounding relative to that disturbance: 2e-13 of the size of coordinates, in each of a hundred steps.
 const ROUNDING: f64 = 2e-2;
-/// Effect of friction on velocities relative to size and speed; it is found to 1e-7 of the largest force in each step.
-const FRICTION: f64 = 5e-9;
+/// Effect of friction on velocities relative to size and speed: it is found to 1e-7 of the largest force in each step, and thus the change of speed by an impact to as much of that.
+const FRICTION: f64 = 1e-7;
 /// Growth of the disturbance beyond which nothing can be said.
 const CHAOS: f64 = 1e5;
 

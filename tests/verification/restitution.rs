@@ -58,12 +58,15 @@ impl Bounce {
 
     /// Bound of the error of the rebound. Explicit contact holds back h²/4 of its energy, h = ω Δt, at either end of it: h²/8 of the speed. Stiff rock takes some for its own
     /// vibrations, by the part that contact's stiffness is of its own, 1/1.25e5. The field of `Smooth` is linear but for the depth v/ω over L₀, the energy of
-    /// contact by as much, and the rebound by a quarter of it. Where nothing is to come back, what the blow leaves of vibrations in a cube that deforms counts as
+    /// contact by as much, and the rebound by a quarter of it. So is that of `Element`, but for the depth over the height of the base's
+    /// tetrahedra, 0.25 m. Where nothing is to come back, what the blow leaves of vibrations in a cube that deforms counts as
     /// rebound: docs/theory/contact.md says 0.01 in all.
     fn error(&self) -> f64 {
+        let depth_m = SPEED_M_S * self.step_s() / self.h;
         let bends = match (self.restitution == 0.0 && self.body != "Rigid", self.potential) {
             (true, _) => return 0.01 - LEAST,
-            (_, "Smooth(reference_m: 1)") => 0.25 * SPEED_M_S * self.step_s() / self.h,
+            (_, "Smooth(reference_m: 1)") => 0.25 * depth_m,
+            (_, "Element") => 0.25 * depth_m / 0.25,
             _ => 0.0,
         };
         0.125 * self.h * self.h + 8e-6 + bends

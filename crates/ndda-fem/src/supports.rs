@@ -207,30 +207,35 @@ impl BlockSupports {
         Ok(())
     }
 
-    /// The frame is free where only whole nodes are held, held where no rotation is left, and turns about one
-    /// axis where that axis leaves all held directions alone.
+    /// The frame is free where only whole nodes are held, unless they cannot move against each other and leave no rotation; it is held where rollers or springs along a
+    /// direction leave none, and turns about one axis where that axis leaves all held directions alone.
     fn choose_frame(&self, operator: &BlockOperator) -> Result<Frame, SupportError> {
-        // Nodes apart from each other that move alike keep the block from turning.
+        // Nodes apart from each other that move alike keep the block from turning, but about a line of them.
         if !self.ties.is_empty() {
             return Ok(Frame::Held);
         }
         let holds = self.all_holds();
-        if holds.is_empty() {
-            return Ok(Frame::free(operator));
+        if holds.iter().all(|(_, held)| held.len() == 3) {
+            return Ok(if self.keeps_from_turning(operator) { Frame::Held } else { Frame::free(operator) });
         }
         let rotations = free_rotations(operator, &holds);
-        if rotations.is_empty() {
-            return Ok(Frame::Held);
-        }
-        if holds.iter().all(|(_, held)| held.len() == 3) {
-            return Ok(Frame::free(operator));
-        }
         match rotations.as_slice() {
+            [] => Ok(Frame::Held),
             [axis] if holds.iter().all(|(_, held)| invariant_about(axis, held)) => {
                 Ok(Frame::About { axis: *axis })
             }
             _ => Err(SupportError::TurnsHeldDirections { freedom: rotations.len() }),
         }
+    }
+
+    /// Whether nodes are held, all in one place or by one motion, that leave no rotation. Springs give way, and motions that differ may turn the block.
+    fn keeps_from_turning(&self, operator: &BlockOperator) -> bool {
+        let Some(first) = self.held.first() else { return false };
+        let motion_of = |node: &HeldNode| node.motion.map(|i| &self.motions[i]);
+        let moves_alike =
+            |node: &HeldNode| node.motion == first.motion || motion_of(node) == motion_of(first);
+        let holds: Vec<_> = self.held.iter().map(|node| (node.node, node.held.clone())).collect();
+        self.held.iter().all(moves_alike) && free_rotations(operator, &holds).is_empty()
     }
 
     /// Held directions per support, eliminated and sprung alike.
@@ -352,6 +357,23 @@ mod tests {
         assert!(matches!(supports.frame, Frame::Free { .. }));
         let refused = BlockSupports::new(&corner(), &[along(&[0], Vec3::z())], &[]);
         assert!(matches!(refused, Err(SupportError::TurnsHeldDirections { .. })));
+    }
+
+    #[test]
+    fn whole_nodes_keep_a_block_from_turning_only_if_they_are_held_and_move_alike() {
+        let frame = |supports: &[NodeSupport]| BlockSupports::new(&corner(), supports, &[]).unwrap().frame;
+        let fixed = NodeSupport { nodes: vec![0, 1, 2], hold: Hold::Fixed, spring_n_m: None };
+        let sprung = NodeSupport { spring_n_m: Some(1e5), ..fixed.clone() };
+        assert_eq!(frame(std::slice::from_ref(&fixed)), Frame::Held);
+        assert!(matches!(frame(std::slice::from_ref(&sprung)), Frame::Free { .. }));
+        assert_eq!(frame(&[fixed, sprung]), Frame::Held);
+        let moved = |nodes: &[u32], z: f64| NodeSupport {
+            nodes: nodes.to_vec(),
+            hold: Hold::Motion(Motion::Rows(vec![(0.0, Vec3::zeros()), (1.0, Vec3::z() * z)])),
+            spring_n_m: None,
+        };
+        assert_eq!(frame(&[moved(&[0, 1], 1.0), moved(&[2], 1.0)]), Frame::Held);
+        assert!(matches!(frame(&[moved(&[0, 1], 1.0), moved(&[2], 2.0)]), Frame::Free { .. }));
     }
 
     #[test]

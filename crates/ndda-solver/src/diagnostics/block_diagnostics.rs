@@ -18,6 +18,7 @@ use crate::bodies::report::LateralDrift;
 use crate::bodies::report::RigidForcing;
 use crate::diagnostics::creep::CreepDiagnostics;
 use crate::diagnostics::hops::Hops;
+use crate::diagnostics::kept_turn::KeptTurn;
 use crate::diagnostics::many::each_of_many;
 use crate::diagnostics::rebound::Rebound;
 use crate::diagnostics::ringing::{Quadrature, Ringing};
@@ -80,6 +81,7 @@ pub(crate) struct BlockDiagnostics {
     solves_contact: bool,
     /// Largest error of a velocity for being turned too little [m/s].
     turned_m_s: f64,
+    kept_turn: KeptTurn,
     creep: CreepDiagnostics,
 }
 
@@ -93,6 +95,7 @@ impl BlockDiagnostics {
             begun: false,
             solves_contact,
             turned_m_s: 0.0,
+            kept_turn: KeptTurn::default(),
             creep: CreepDiagnostics::default(),
         }
     }
@@ -215,6 +218,16 @@ impl BlockDiagnostics {
         balance.lag_rad += 0.5 * since_s * (balance.lag_rate_rad_s + rate_rad_s);
         balance.lag_rate_rad_s = rate_rad_s;
         self.turned_m_s = self.turned_m_s.max(balance.lag_rad * spin_rad_s * scale.radius_m);
+    }
+
+    /// Records an angle [rad] and a rate of rotation [rad/s] of a block that is computed as if it did not turn.
+    pub(crate) fn add_kept_turn(&mut self, block: BlockId, turn_rad: f64, spin_rad_s: f64) {
+        self.kept_turn.add(block, &self.scales[block.index()], turn_rad, spin_rad_s);
+    }
+
+    /// Errors of blocks that turn though they are computed as if they did not.
+    pub(crate) fn kept_turn(&self) -> &KeptTurn {
+        &self.kept_turn
     }
 
     /// Records the rotation of a block whose inertia is wrong by a part of it, `since_s` after the last sample, at a rate of rotation [rad/s] now:

@@ -6,7 +6,7 @@ use crate::diagnostics::worst::Worst;
 use crate::step::report::StepCounts;
 
 /// The worst values of a run so far; the limits are those of the summary.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Invariants {
     /// |momentum − impulses| / max Σ m |v|.
     pub linear_momentum: f64,
@@ -73,6 +73,10 @@ pub struct Invariants {
     pub turn_place: Worst,
     /// error of a velocity over the largest speed, for turns that are behind.
     pub turn_speed: f64,
+    /// Error of a place over the smallest tet height of its block, for a block that turns though its supports are taken to keep it from turning.
+    pub kept_turn_place: Worst,
+    /// Error of a velocity over the largest speed, for the same.
+    pub kept_turn_speed: Worst,
     /// Error of a velocity over the largest speed, for blocks that turn with the inertia of lumped masses.
     pub lumped_speed: Worst,
     /// Error of a place over the smallest tet height of its block, for the same.

@@ -13,7 +13,6 @@ use serde::{Deserialize, Serialize};
 use crate::diagnostics::block_diagnostics::BlockDiagnostics;
 use crate::diagnostics::worst::Worst;
 use crate::integrators::time_integrator::StepWeights;
-use crate::step::report::StepCounts;
 use crate::step::report::StepReport;
 
 /// Strain below which the search is skipped: a tenth of the limit of a linear law.
@@ -75,53 +74,7 @@ impl Ledger {
     /// An empty ledger of some blocks; `start` is the force and torque from outside before the first step, zero unless the integrator remembers
     /// accelerations [N, N m]; `slow_m_s` is the speed below which blocks hardly move.
     pub(crate) fn new(start: (Vec3, Vec3), blocks: BlockDiagnostics, slow_m_s: f64) -> Self {
-        let worst = Invariants {
-            linear_momentum: 0.0,
-            angular_momentum: 0.0,
-            energy_gain: 0.0,
-            energy_loss: 0.0,
-            lasting_gain: 0.0,
-            damping_gain: 0.0,
-            lasting_loss: 0.0,
-            friction_gain: 0.0,
-            block_gain: Worst::default(),
-            block_loss: Worst::default(),
-            unresolved_friction: Worst::default(),
-            drawn_overlap_m_s: Worst::default(),
-            max_penetration_ratio: 0.0,
-            bond_overload: 0.0,
-            lateral_drift_speed: Worst::default(),
-            lateral_drift_place: Worst::default(),
-            creep_speed: Worst::default(),
-            creep_place: Worst::default(),
-            growing_hops: Worst::default(),
-            chattering_hops: Worst::default(),
-            hops_with_friction: Worst::default(),
-            second_impact: Worst::default(),
-            rebound_speed: Worst::default(),
-            rebound_speed_on_a_plane: Worst::default(),
-            action_reaction: 0.0,
-            friction_left_m_s: 0.0,
-            smallest_volume_ratio: 1.0,
-            largest_strain: Worst::default(),
-            max_h: 0.0,
-            max_travel: Worst::default(),
-            turn_place: Worst::default(),
-            turn_speed: 0.0,
-            lumped_speed: Worst::default(),
-            lumped_place: Worst::default(),
-            ringing: Worst::default(),
-            vibration: 0.0,
-            unresolved_speed: 0.0,
-            damping_speed: 0.0,
-            contact_damping_speed: 0.0,
-            candidate_pairs_max: 0,
-            contact_pairs_max: 0,
-            candidate_pairs_total: 0,
-            contact_pairs_total: 0,
-            iterations_max: 0,
-            control: StepCounts::default(),
-        };
+        let worst = Invariants { smallest_volume_ratio: 1.0, ..Invariants::default() };
         Self {
             start: None,
             impulse: Vec3::zeros(),
@@ -384,6 +337,8 @@ impl Ledger {
             lumped_place,
             turn_place: self.blocks.turned_over_height(),
             turn_speed: over(self.blocks.turned_m_s(), scale_m_s.max(self.blocks.turned_m_s())),
+            kept_turn_place: self.blocks.kept_turn().place,
+            kept_turn_speed: self.blocks.kept_turn().speed(scale_m_s),
             ringing: self.blocks.ringing(scale_m_s, self.rounding_j),
             vibration: self.vibration.over(self.largest_speed_m_s),
             unresolved_speed: speed(self.unresolved_m_s),

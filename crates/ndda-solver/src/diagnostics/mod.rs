@@ -6,6 +6,7 @@ pub(crate) mod creep;
 pub(crate) mod energies;
 pub(crate) mod hops;
 pub(crate) mod invariants;
+pub(crate) mod kept_turn;
 pub(crate) mod lateral_drift;
 pub(crate) mod ledger;
 pub(crate) mod many;

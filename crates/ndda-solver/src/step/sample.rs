@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use ndda_contact::{ContactInput, ContactReport, FacetContact};
+use ndda_fem::frame::Frame;
 use ndda_fem::stress::{cauchy_stress, largest_strain, smallest_volume_ratio};
 use ndda_mesh::{BlockId, Mat3, TetId, Vec3};
 use ndda_ranks::ExactSum;
@@ -109,6 +110,12 @@ impl Simulation {
             self.audit.ledger.blocks().add_lumped_turn(block, since_s, spin, error);
         }
         let Some(elastic) = body.elastic() else { return Ok(()) };
+        if shape.supports.frame == Frame::Held {
+            let motion = shape.operator.rigid_motion(position, velocity);
+            let turn = Frame::free(&shape.operator).rotation(&shape.operator, position, &motion.center);
+            let turn_rad = turn.map_or(0.0, |turn| nalgebra::Rotation3::from_matrix_unchecked(turn).angle());
+            self.audit.ledger.blocks().add_kept_turn(block, turn_rad, motion.spin_rad_s.norm());
+        }
         let name = || self.problem.blocks.names[block.index()].clone();
         let (volume_ratio, tet) = smallest_volume_ratio(&shape.operator, position);
         let tet = self.problem.blocks.tets_of(block).start + tet;

@@ -194,35 +194,32 @@ fn bolt_pieces(simulation: &Simulation) -> u64 {
 
 impl fmt::Display for Guess {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let steps = self.timed_steps;
-        write!(
-            f,
-            "a run would take about {:.1} s ({} timed{})",
-            self.run_s,
-            counted(steps as usize, "step", "steps"),
-            match self.touches {
-                Some(true) => "; longer if more blocks come to touch",
-                Some(false) => ", in which no blocks touch; longer once they do",
-                None => "",
-            }
-        )?;
+        write!(f, "a run would take about {:.1} s", self.run_s)?;
+        if let Some(bytes) = self.memory_bytes {
+            write!(f, " and {} of memory", readable(bytes))?;
+        }
+        let touches = match self.touches {
+            Some(true) => "; longer if more blocks come to touch",
+            Some(false) => ", in which no blocks touch; longer once they do",
+            None => "",
+        };
+        write!(f, " ({} timed{touches})", counted(self.timed_steps as usize, "step", "steps"))?;
         if self.settles {
-            f.write_str(" once it has settled, for which it may need many times as long")?;
+            f.write_str("\n  and as long as it takes to settle before, which may be many times that")?;
         }
         if let Some(twin_s) = self.twin_s {
             write!(
                 f,
-                ", {twin_s:.1} s more for a second run, which shows whether small differences grow, if three or more blocks move"
+                "\n  {twin_s:.1} s more if three or more blocks move: a second run shows whether small differences grow"
             )?;
         }
         if let Some(half_step_s) = self.half_step_s {
-            write!(f, ", {half_step_s:.1} s more for one with half the step, if a block hits several times")?;
+            write!(
+                f,
+                "\n  {half_step_s:.1} s more if a block hits several times: a second run with half the step shows whether speeds are right"
+            )?;
         }
-        if let Some(bytes) = self.memory_bytes {
-            let comma = if self.half_step_s.is_some() { "," } else { "" };
-            write!(f, "{comma} and {} of memory", readable(bytes))?;
-        }
-        write!(f, "; it would write")?;
+        write!(f, "\nit would write")?;
         for file in &self.files {
             write!(f, "\n  {:9} {}{}", readable(file.bytes), file.name, file.several())?;
         }
@@ -259,17 +256,14 @@ mod tests {
         let two = guess_of(2);
         assert_eq!(two.twin_s, None);
         assert!(0.0 < two.half_step_s.unwrap() && two.half_step_s.unwrap() <= 2.0 * two.run_s, "{two:?}");
-        assert!(
-            two.to_string().contains("s more for one with half the step, if a block hits several times"),
-            "{two}"
-        );
-        assert!(!two.to_string().contains("second run"), "{two}");
+        assert!(two.to_string().contains("s more if a block hits several times"), "{two}");
+        assert!(!two.to_string().contains("if three or more blocks move"), "{two}");
         let three = guess_of(3);
         let twin_s = three.twin_s.unwrap();
         assert!(0.0 < twin_s && twin_s <= three.run_s, "{three:?}");
         assert!(
             three.to_string().contains(
-                "for a second run, which shows whether small differences grow, if three or more blocks move"
+                "s more if three or more blocks move: a second run shows whether small differences grow"
             ),
             "{three}"
         );

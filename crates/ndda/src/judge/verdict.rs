@@ -2,8 +2,10 @@
 
 use ndda_solver::{Simulation, Worst};
 
+mod rotation;
 mod vibration;
 
+use rotation::{kept_from_turning, lumped_rotation, turns};
 use vibration::{
     SETTLE, arriving_waves, chatter, contact_damping, creep, energy_from_damping, hops, rebound, ringing,
     within_a_step,
@@ -101,6 +103,7 @@ fn entries(simulation: &Simulation) -> Vec<Entry> {
     entries.push(strain(simulation));
     entries.extend(resolution(simulation));
     entries.extend(turns(simulation));
+    entries.extend(kept_from_turning(simulation).into_iter().flatten());
     entries.push(ringing(simulation));
     entries.extend(within_a_step(simulation));
     entries.extend(contact_damping(simulation));
@@ -317,48 +320,6 @@ fn resolution(simulation: &Simulation) -> [Entry; 2] {
     [
         Entry::new("contact stability number", h, Judgement::Warn, coarse),
         Entry::new("travel in a step / block width", travel, Judgement::Warn, jumped),
-    ]
-}
-
-/// Whether blocks have turned as far as their spin takes them.
-fn turns(simulation: &Simulation) -> [Entry; 2] {
-    let worst = simulation.invariants();
-    let (place, speed) = (worst.turn_place, worst.turn_speed);
-    let where_it_is = format!(
-        "block `{}` rotates too far in a step: its surface is misplaced by {:.2} of its smallest element size, limit {PLACE}; reduce step_s",
-        name(simulation, place),
-        place.value
-    );
-    let how_fast = format!(
-        "a block rotates too far in a step: its velocities may be wrong by {:.1} % of the largest speed, limit {:.0} %; reduce step_s",
-        100.0 * speed,
-        100.0 * SPEED
-    );
-    [
-        warned("rotation error / element size", place.value, PLACE, where_it_is),
-        warned("rotation error / largest speed", speed, SPEED, how_fast),
-    ]
-}
-
-/// Whether blocks turn wrongly because lumped masses have too large an inertia of rotation.
-fn lumped_rotation(simulation: &Simulation) -> [Entry; 2] {
-    let worst = simulation.invariants();
-    let (place, speed) = (worst.lumped_place, worst.lumped_speed);
-    let cure = "because lumped masses have too large an inertia of rotation: set mass: Consistent, or use more cells";
-    let where_it_is = format!(
-        "the rotation of block `{}` may misplace its surface by {:.2} of its smallest element size, limit {PLACE}, {cure}",
-        name(simulation, place),
-        place.value
-    );
-    let how_fast = format!(
-        "the rotation of block `{}` may be wrong by {:.1} % of the largest speed, limit {:.0} %, {cure}",
-        name(simulation, speed),
-        100.0 * speed.value,
-        100.0 * SPEED
-    );
-    [
-        warned("lumped-mass rotation error / element size", place.value, PLACE, where_it_is),
-        warned("lumped-mass rotation error / largest speed", speed.value, SPEED, how_fast),
     ]
 }
 

@@ -60,6 +60,8 @@ pub struct ConvexBlocks {
     whole: Vec<Option<Box<AffineConvexTarget>>>,
     /// Which blocks move by affine maps; blocks beyond the list do not.
     is_affine: Vec<bool>,
+    /// Which blocks are convex; blocks beyond the list are not.
+    is_convex: Vec<bool>,
     /// How many blocks are affine convex targets.
     affine: usize,
     /// The faces of each block once more, by rows, and where those of each row are.
@@ -96,6 +98,8 @@ impl ConvexBlocks {
         self.contactors.clear();
         self.is_affine.clear();
         self.is_affine.extend_from_slice(affine);
+        self.is_convex.clear();
+        self.is_convex.extend(surfaces.iter().map(|surface| surface.convex));
         for (block, surface) in blocks.ids().zip(surfaces) {
             let count = surface.planes.len();
             let is_affine = affine.get(block.index()) == Some(&true);
@@ -205,6 +209,12 @@ impl ConvexBlocks {
     #[inline]
     pub(crate) fn keeps_its_shape(&self, block: BlockId) -> bool {
         self.is_affine.get(block.index()) == Some(&true)
+    }
+
+    /// Whether a block is convex, however many faces it has.
+    #[inline]
+    pub(crate) fn is_convex(&self, block: BlockId) -> bool {
+        self.is_convex.get(block.index()) == Some(&true)
     }
 
     /// The faces of a block as contactors in another; none where it is put into that triangle by triangle.

@@ -25,13 +25,16 @@ use crate::friction::facet::relative_motion;
 use crate::integration::integrals::Integrals;
 use crate::model::{Body, ContactHistory, ContactInput};
 use crate::restitution::dashpot::{Dashpot, DashpotPair};
-use crate::restitution::pair::{Change, Pair, Point};
+use crate::restitution::pair::{Change, Pair, Point, take_one_normal};
 
 pub(crate) use scene::DampingScene;
 pub use table::{Restitution, RestitutionTable};
 
 /// Part of the largest force that the damping of a pair may still change by.
 const TOLERANCE: f64 = 1e-9;
+/// Cosine of about 8°: a facet whose normal is within that of the direction of the pair is damped by what presses it, and others by what presses all of the pair, so that their
+/// pushes across that direction stay in balance.
+const ALONG: f64 = 0.99;
 /// Sweeps over all pairs.
 const MOST_SWEEPS: usize = 50;
 
@@ -168,16 +171,17 @@ impl ContactDamping {
                 continue;
             }
             let first = self.points.len();
-            let mut stiffness_n_m = 0.0;
             for &(_, t) in run {
                 let touch = &scene.integrals.touching()[t as usize];
                 let factor = self.table.factors(scene.input.blocks, touch.triangle, touch.target).normal;
-                if factor == 0.0 {
-                    continue;
+                if factor > 0.0 {
+                    self.points.extend(scene.points(t, &self.push_pa[t as usize], (pair, factor)));
                 }
-                stiffness_n_m += scene.stiffness_n_m(t as usize);
-                self.points.extend(scene.points(t, &self.push_pa[t as usize], (pair, factor)));
             }
+            if pair.iter().all(|block| scene.hulls.is_convex(*block)) {
+                take_one_normal(&mut self.points[first..]);
+            }
+            let stiffness_n_m = scene.stiffness_n_m(&self.points[first..], &self.push_pa);
             let range = [first as u32, self.points.len() as u32];
             match Pair::new((pair, range), &self.points[first..], stiffness_n_m, bodies, dt_s) {
                 Some(pair) => self.pairs.push(pair),
@@ -224,20 +228,25 @@ impl ContactDamping {
         self.left_pa.extend_from_slice(scene.penalty_pa);
         self.bodies.clear();
         self.bodies.extend_from_slice(scene.input.bodies);
-        for four in self.points.chunks_exact(4) {
-            let t = four[0].facet as usize;
-            let touch = &touching[t];
-            let push_pa = self.push_pa[t];
-            let taken_n: f64 = four.iter().map(|point| point.taken_n).sum();
-            let part = taken_n / four.iter().map(|point| point.force_n).sum::<f64>();
-            self.left_pa[t] = scene.penalty_pa[t] * (1.0 - part);
-            self.taken_pa[t] = part * push_pa;
-            let unit = push_pa.normalize();
-            let moment: Vec3 = four.iter().map(|point| point.taken_n * point.arm).sum();
-            let tilt_n_m = -moment.cross(&unit);
-            self.tilt_n_m[t] = tilt_n_m;
-            self.bodies[touch.owner.index()].torque_n_m += tilt_n_m;
-            self.bodies[touch.target.index()].torque_n_m -= tilt_n_m;
+        for pair in &self.pairs {
+            let points = &self.points[pair.range()];
+            let of_pair = taken_part(points);
+            for four in points.chunks_exact(4) {
+                let t = four[0].facet as usize;
+                let touch = &touching[t];
+                let push_pa = self.push_pa[t];
+                let sign = if touch.owner == pair.blocks[0] { 1.0 } else { -1.0 };
+                let unit = sign * four[0].push;
+                let is_along = unit.dot(&push_pa) > ALONG * push_pa.norm();
+                let part = if is_along { taken_part(four) } else { of_pair };
+                self.left_pa[t] = scene.penalty_pa[t] * (1.0 - part);
+                self.taken_pa[t] = part * push_pa;
+                let moment: Vec3 = four.iter().map(|point| point.taken_n * point.arm).sum();
+                let tilt_n_m = -moment.cross(&unit);
+                self.tilt_n_m[t] = tilt_n_m;
+                self.bodies[touch.owner.index()].torque_n_m += tilt_n_m;
+                self.bodies[touch.target.index()].torque_n_m -= tilt_n_m;
+            }
         }
     }
 
@@ -264,4 +273,10 @@ impl ContactDamping {
             add(touch.owner, touch.target, work_j);
         }
     }
+}
+
+/// Part of their push that damping takes from points.
+fn taken_part(points: &[Point]) -> f64 {
+    let sum = |of: fn(&Point) -> f64| points.iter().map(of).sum::<f64>();
+    sum(|point| point.taken_n) / sum(|point| point.force_n)
 }

@@ -23,13 +23,14 @@ pub(super) struct Point {
     pub arm: Vec3,
     /// Place [m].
     pub x: Vec3,
-    /// Direction of the push on the first block.
+    /// Direction of the push on the first block: that of the facet or, of convex blocks, that of all of the pair.
     pub push: Vec3,
-    /// Elastic force [N].
+    /// Elastic force along it [N].
     pub force_n: f64,
     /// α.
     pub factor: f64,
-    /// Speed at which the blocks part here at the start of the step [m/s].
+    /// Velocity of the first block relative to the second here at the start of the step, and along the push [m/s].
+    pub velocity_m_s: Vec3,
     pub parting_m_s: f64,
     /// Force per velocity [N s/m], and where in the step the velocity counts.
     pub rate: f64,
@@ -38,6 +39,18 @@ pub(super) struct Point {
     pub free_m_s: f64,
     /// Reduction of the normal force by damping [N].
     pub taken_n: f64,
+}
+
+/// Two convex blocks touch in one region, and part along the force between them. Each point counts by what it pushes along that: an edge that slides in a face is not damped,
+/// though the faces beside it part along their own normals.
+pub(super) fn take_one_normal(points: &mut [Point]) {
+    let force_n: Vec3 = points.iter().map(|point| point.force_n * point.push).sum();
+    let Some(normal) = force_n.try_normalize(0.0) else { return };
+    for point in points {
+        point.force_n *= normal.dot(&point.push).max(0.0);
+        point.push = normal;
+        point.parting_m_s = normal.dot(&point.velocity_m_s);
+    }
 }
 
 /// Change of the motion of a block in a step.

@@ -41,11 +41,20 @@ impl DampingScene<'_> {
         self.integrals.sums_of(touch).center(&corners)
     }
 
-    /// By how much the push of a facet grows with the depth [N/m].
-    pub(super) fn stiffness_n_m(&self, t: usize) -> f64 {
-        let sums = self.integrals.sums_of(&self.integrals.touching()[t]);
-        let curvature = self.curvature_pa_m.get(t).copied().unwrap_or(0.0);
-        self.penalty_pa[t] * sums.slope.iter().sum::<f64>() + curvature * sums.pressure
+    /// By how much the pushes of some facets, of which `points` are the points, grow with the depth along the force between the blocks [N/m]. Where the pressure grows with the
+    /// overlap of the whole pair, it does with what all facets sweep along that force.
+    pub(super) fn stiffness_n_m(&self, points: &[Point], push_pa: &[Vec3]) -> f64 {
+        let (mut own_n_m, mut shared_n_m, mut along, mut all) = (0.0, 0.0, 0.0, 0.0);
+        for four in points.chunks_exact(4) {
+            let t = four[0].facet as usize;
+            let sums = self.integrals.sums_of(&self.integrals.touching()[t]);
+            let cosine = 4.0 * four[0].force_n / (sums.pressure * push_pa[t].norm());
+            own_n_m += cosine * cosine * self.penalty_pa[t] * sums.slope.iter().sum::<f64>();
+            shared_n_m += cosine * self.curvature_pa_m.get(t).copied().unwrap_or(0.0) * sums.pressure;
+            along += cosine * sums.pressure;
+            all += sums.pressure;
+        }
+        if shared_n_m > 0.0 { own_n_m + shared_n_m * along / all } else { own_n_m }
     }
 
     /// Stiffness of the shear spring of a facet [N/m]; zero where there is none, and where a bond bears the shear.
@@ -99,6 +108,7 @@ impl DampingScene<'_> {
             push: sign * unit,
             force_n: 0.25 * sums.pressure * push_pa.norm(),
             factor,
+            velocity_m_s: sign * (velocity + spin.cross(&arm)),
             parting_m_s: unit.dot(&(velocity + spin.cross(&arm))),
             rate: 0.0,
             end: 0.0,

@@ -74,7 +74,7 @@ impl Opposite {
     ) {
         self.find_runs(scene, forces, by_face);
         self.find_opposite(scene, by_face);
-        self.weigh(scene, by_face, |block| faces.is_convex(block));
+        self.weigh(scene, by_face);
         order.clear();
         make_room(order, by_face.len());
         patches.clear();
@@ -191,16 +191,15 @@ impl Opposite {
 
 impl Opposite {
     /// Two convex blocks touch in one region, whose normal is the direction of the force between them: where an edge or a corner is in a face, the faces beside it slip
-    /// only as deep as they are in it, and the face that is pressed along that normal bears the friction of all. Blocks that deform keep the friction of each face, and so
-    /// do faces of several laws.
-    fn weigh(&mut self, scene: &PatchScene, by_face: &[Place], is_convex: impl Fn(BlockId) -> bool) {
+    /// only as deep as they are in it, and the face that is pressed along that normal bears the friction of all. Faces of several laws keep their own.
+    fn weigh(&mut self, scene: &PatchScene, by_face: &[Place]) {
         let Self { runs, by_pair, weights, .. } = self;
         weights.clear();
-        let may = |block: BlockId| is_convex(block) && !scene.input.bodies[block.index()].deforms;
         for pair in by_pair.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).filter(|pair| pair.len() > 1) {
             let law = |(_, _, run, _): &PairRun| scene.law(runs[*run as usize].of(by_face));
             let first = law(&pair[0]);
-            if !may(pair[0].0) || !may(pair[0].1) || !pair.iter().all(|run| is_same_law(law(run), first)) {
+            let are_convex = scene.hulls.is_convex(pair[0].0) && scene.hulls.is_convex(pair[0].1);
+            if !are_convex || !pair.iter().all(|run| is_same_law(law(run), first)) {
                 continue;
             }
             if let Some((bearer, own, others)) = bearer(runs, pair) {

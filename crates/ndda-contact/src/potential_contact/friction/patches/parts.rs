@@ -32,8 +32,6 @@ pub(super) struct FaceParts {
     area_m2: Vec<f64>,
     /// How many triangles it has.
     triangles: Vec<u32>,
-    /// Whether each block is convex.
-    is_convex: Vec<bool>,
 }
 
 impl FaceParts {
@@ -43,8 +41,6 @@ impl FaceParts {
         self.part_of.clear();
         self.area_m2.clear();
         self.triangles.clear();
-        self.is_convex.clear();
-        self.is_convex.extend(surfaces.iter().map(|surface| surface.convex));
         for (block, BlockFaces { of_triangle, .. }) in blocks.ids().zip(surfaces) {
             let triangles = blocks.triangles_of(block);
             let named = &blocks.triangle_surface[triangles.clone()];
@@ -81,11 +77,6 @@ impl FaceParts {
             }
             self.area_m2[face] = face_at_rest.area_m2;
         }
-    }
-
-    /// Whether a block is convex.
-    pub(super) fn is_convex(&self, block: BlockId) -> bool {
-        self.is_convex[block.index()]
     }
 
     /// The face of a boundary triangle.
