@@ -21,12 +21,17 @@ fn motion(simulation: &Simulation) -> (Vec3, Vec3) {
 }
 
 /// A cube with an edge down on a plane floor, after a time.
-fn cube_on_its_edge(body: &str, (velocity, gravity): (Vec3, f64), contact: &str, end_s: f64) -> Vec3 {
+fn cube_on_its_edge(body: &str, motion: (Vec3, f64), contact: &str, end_s: f64) -> Vec3 {
+    cube_on(&format!("blocks: [{FLOOR},"), body, motion, contact, end_s)
+}
+
+/// The same on another floor.
+fn cube_on(floor: &str, body: &str, (velocity, gravity): (Vec3, f64), contact: &str, end_s: f64) -> Vec3 {
     let [x, _, z] = [velocity.x, velocity.y, velocity.z];
     let step_s: f64 = 2e-5;
     let mut simulation = simulation(&format!(
         "(title: \"edge\", time: (step_s: {step_s}, end_s: 1), gravity_m_s2: (0, 0, -{gravity}), {MATERIAL},
-          blocks: [{FLOOR},
+          {floor}
             (name: \"cube\", material: \"rock\", body: {body}, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1), pattern: TwentyFour),
              turns: [(axis: (0, 1, 0), angle_deg: 45)], at_m: (0, 0, {}), velocity_m_s: ({x}, 0, {z}))],
           contact: Potential(penalty_pa: 1e9, potential: Smooth(), {contact}))",
@@ -36,14 +41,42 @@ fn cube_on_its_edge(body: &str, (velocity, gravity): (Vec3, f64), contact: &str,
     motion(&simulation).0
 }
 
+/// The floor with a step at its far end, so that it is not convex.
+fn stepped_floor() -> String {
+    let outline = "[(-3, -1), (9, -1), (9, 1), (8.5, 1), (8.5, 0), (-3, 0)]";
+    format!(
+        "rock: [(name: \"floor\", material: \"rock\", body: Fixed, domain: Column(outline_m: {outline}, axis: Y, start_m: -1, end_m: 3))], blocks: ["
+    )
+}
+
 #[test]
 fn an_edge_that_slides_on_a_smooth_floor_is_not_braked() {
-    for body in ["Rigid", "Affine", "Elastic"] {
-        let start = Vec3::new(1.0, 0.0, 0.0);
-        let velocity = cube_on_its_edge(body, (start, 10.0), "friction: None, restitution: 0.5", 0.1);
-        let what =
-            format!("speed of a cube ({body}) that slides on its edge, e = 0.5, over that at the start");
-        row("damping at edges", &what, velocity.x, Within(1.0, 1e-3));
+    let plate = format!("blocks: [{FLOOR},");
+    for (floor, name) in [(&plate, "a plate"), (&stepped_floor(), "a floor that is not convex")] {
+        for body in ["Rigid", "Affine", "Elastic"] {
+            let start = Vec3::new(1.0, 0.0, 0.0);
+            let contact = "friction: None, restitution: 0.5";
+            let velocity = cube_on(floor, body, (start, 10.0), contact, 0.1);
+            let what = format!(
+                "speed of a cube ({body}) that slides on its edge on {name}, e = 0.5, over that at the start"
+            );
+            row("damping at edges", &what, velocity.x, Within(1.0, 1e-3));
+        }
+    }
+}
+
+#[test]
+fn friction_takes_nothing_from_a_cube_that_falls_on_its_edge_on_a_floor_that_is_not_convex() {
+    for body in ["Rigid", "Elastic"] {
+        let start = Vec3::new(0.0, 0.0, -1.0);
+        let after = |friction: &str| {
+            let contact = format!("friction: {friction}, restitution: 1");
+            cube_on(&stepped_floor(), body, (start, 0.0), &contact, 0.1).z
+        };
+        let what = format!(
+            "speed of a cube ({body}) after a fall on its edge on a floor that is not convex, φ = 30°, over that without friction"
+        );
+        row("damping at edges", &what, after("(friction_deg: 30)") / after("None"), Within(1.0, 1e-4));
     }
 }
 

@@ -25,16 +25,13 @@ use crate::friction::facet::relative_motion;
 use crate::integration::integrals::Integrals;
 use crate::model::{Body, ContactHistory, ContactInput};
 use crate::restitution::dashpot::{Dashpot, DashpotPair};
-use crate::restitution::pair::{Change, Pair, Point, take_one_normal};
+use crate::restitution::pair::{ALONG, Change, Pair, Point, take_one_normal};
 
 pub(crate) use scene::DampingScene;
 pub use table::{Restitution, RestitutionTable};
 
 /// Part of the largest force that the damping of a pair may still change by.
 const TOLERANCE: f64 = 1e-9;
-/// Cosine of about 8°: a facet whose normal is within that of the direction of the pair is damped by what presses it, and others by what presses all of the pair, so that their
-/// pushes across that direction stay in balance.
-const ALONG: f64 = 0.99;
 /// Sweeps over all pairs.
 const MOST_SWEEPS: usize = 50;
 
@@ -178,9 +175,9 @@ impl ContactDamping {
                     self.points.extend(scene.points(t, &self.push_pa[t as usize], (pair, factor)));
                 }
             }
-            if pair.iter().all(|block| scene.hulls.is_convex(*block)) {
-                take_one_normal(&mut self.points[first..]);
-            }
+            let are_convex = pair.iter().all(|block| scene.hulls.is_convex(*block));
+            let owner = |point: &Point| scene.integrals.touching()[point.facet as usize].owner;
+            take_one_normal(&mut self.points[first..], are_convex, |point| owner(point) == pair[0]);
             let stiffness_n_m = scene.stiffness_n_m(&self.points[first..], &self.push_pa);
             let range = [first as u32, self.points.len() as u32];
             match Pair::new((pair, range), &self.points[first..], stiffness_n_m, bodies, dt_s) {
@@ -237,6 +234,7 @@ impl ContactDamping {
                 let push_pa = self.push_pa[t];
                 let sign = if touch.owner == pair.blocks[0] { 1.0 } else { -1.0 };
                 let unit = sign * four[0].push;
+                // Others are damped by what presses all of the pair, so that their pushes across that direction stay in balance.
                 let is_along = unit.dot(&push_pa) > ALONG * push_pa.norm();
                 let part = if is_along { taken_part(four) } else { of_pair };
                 self.left_pa[t] = scene.penalty_pa[t] * (1.0 - part);

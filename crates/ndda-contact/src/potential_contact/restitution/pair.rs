@@ -6,6 +6,10 @@ use ndda_mesh::{BlockId, Mat3, Vec3};
 use crate::model::Body;
 use crate::restitution::law::weight_of_end;
 
+/// Cosine of about 8°: a facet is pressed along the force between the blocks if its normal is that near to it.
+pub(super) const ALONG: f64 = 0.99;
+/// Force on other facets, over that on those that are pressed along the force, that hardly counts.
+const BESIDE: f64 = 0.02;
 /// Part of the elastic push of a point that damping leaves at least, so that a push has a direction.
 const LEFT: f64 = 1e-9;
 /// Where blocks turn from approach to parting within a step, a point is damped by at most so many times its mean velocity, whose sign is that of the
@@ -41,11 +45,21 @@ pub(super) struct Point {
     pub taken_n: f64,
 }
 
-/// Two convex blocks touch in one region, and part along the force between them. Each point counts by what it pushes along that: an edge that slides in a face is not damped,
-/// though the faces beside it part along their own normals.
-pub(super) fn take_one_normal(points: &mut [Point]) {
+/// Blocks that touch in one region part along the force between them, and each point counts by what it pushes along that: an edge that slides in a face is not damped, though
+/// the faces beside it part along their own normals. Two convex blocks do so, and others where one of them, the owner of facets, presses with faces along the force alone.
+pub(super) fn take_one_normal(points: &mut [Point], are_convex: bool, is_of_first: impl Fn(&Point) -> bool) {
     let force_n: Vec3 = points.iter().map(|point| point.force_n * point.push).sum();
     let Some(normal) = force_n.try_normalize(0.0) else { return };
+    let is_flat = |first: bool| {
+        let (mut along_n, mut beside_n) = (0.0, 0.0);
+        for point in points.iter().filter(|point| is_of_first(point) == first) {
+            *(if point.push.dot(&normal) > ALONG { &mut along_n } else { &mut beside_n }) += point.force_n;
+        }
+        along_n > 0.0 && beside_n <= BESIDE * along_n
+    };
+    if !(are_convex || is_flat(true) || is_flat(false)) {
+        return;
+    }
     for point in points {
         point.force_n *= normal.dot(&point.push).max(0.0);
         point.push = normal;

@@ -190,53 +190,98 @@ impl Opposite {
 }
 
 impl Opposite {
-    /// Two convex blocks touch in one region, whose normal is the direction of the force between them: where an edge or a corner is in a face, the faces beside it slip
-    /// only as deep as they are in it, and the face that is pressed along that normal bears the friction of all. Faces of several laws keep their own.
+    /// Where an edge or a corner is in a face, the faces beside it slip only as deep as they are in it, and the face that is pressed along the force between the blocks bears
+    /// the friction of all. Two convex blocks touch in one region, whose normal that is; so do others where one of them presses with faces along the force alone, and then all
+    /// of these bear friction. Faces of several laws keep their own.
     fn weigh(&mut self, scene: &PatchScene, by_face: &[Place]) {
         let Self { runs, by_pair, weights, .. } = self;
         weights.clear();
         for pair in by_pair.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).filter(|pair| pair.len() > 1) {
             let law = |(_, _, run, _): &PairRun| scene.law(runs[*run as usize].of(by_face));
             let first = law(&pair[0]);
-            let are_convex = scene.hulls.is_convex(pair[0].0) && scene.hulls.is_convex(pair[0].1);
-            if !are_convex || !pair.iter().all(|run| is_same_law(law(run), first)) {
+            let has_one_region = scene.hulls.is_convex(pair[0].0) && scene.hulls.is_convex(pair[0].1);
+            if !pair.iter().all(|run| is_same_law(law(run), first)) {
                 continue;
             }
-            if let Some((bearer, own, others)) = bearer(runs, pair) {
+            let between = Between::new(runs, pair);
+            if (has_one_region || between.is_flat())
+                && let Some((bears, own, others)) = between.bearers(has_one_region)
+            {
                 let heads = pair.iter().filter(|(_, _, run, opposite)| opposite >= run);
-                weights.extend(heads.map(|&(_, _, run, _)| (run, if run == bearer { own } else { others })));
+                weights.extend(heads.map(|patch| (patch.2, if bears(patch) { own } else { others })));
             }
         }
         weights.iter().for_each(|(run, weight)| runs[*run as usize].weight = *weight);
     }
 }
 
-/// Of the patches of two blocks, the first run of the one that is pressed along the force between them, its weight and that of the others; none where no patch is, or
-/// others hardly count.
-fn bearer(runs: &[Run], pair: &[PairRun]) -> Option<(u32, f64, f64)> {
-    let on_lower_n = |run: u32| {
-        let Run { owner, force_n, .. } = &runs[run as usize];
-        if *owner == pair[0].0 { *force_n } else { -force_n }
-    };
-    let joined_n = |&(_, _, run, opposite): &PairRun| {
-        on_lower_n(run) + if opposite == NONE { Vec3::zeros() } else { on_lower_n(opposite) }
-    };
-    let whole_n: Vec3 = pair.iter().map(|(_, _, run, _)| on_lower_n(*run)).sum();
-    let is_along = |force_n: &Vec3| {
-        force_n.dot(&whole_n) > 0.0 && force_n.cross(&whole_n).norm() < TILT * force_n.norm() * whole_n.norm()
-    };
-    let (mut best, mut all_n) = (None, 0.0);
-    for patch in pair.iter().filter(|(_, _, run, opposite)| opposite >= run) {
-        let force_n = joined_n(patch);
-        let size_n = force_n.norm();
-        all_n += size_n;
-        if is_along(&force_n) && best.is_none_or(|(_, most_n)| size_n > most_n) {
-            best = Some((patch.2, size_n));
-        }
+/// The normal forces between two blocks.
+struct Between<'a> {
+    runs: &'a [Run],
+    pair: &'a [PairRun],
+    /// Their sum on the lower block [N].
+    whole_n: Vec3,
+}
+
+impl<'a> Between<'a> {
+    fn new(runs: &'a [Run], pair: &'a [PairRun]) -> Self {
+        let mut between = Self { runs, pair, whole_n: Vec3::zeros() };
+        between.whole_n = pair.iter().map(|(_, _, run, _)| between.on_lower_n(*run)).sum();
+        between
     }
-    let (run, own_n) = best?;
-    let part = ((all_n - own_n) / own_n / BESIDE - 1.0).min(1.0);
-    (part > 0.0).then(|| (run, 1.0 + part * (whole_n.norm() / own_n - 1.0), 1.0 - part))
+
+    fn on_lower_n(&self, run: u32) -> Vec3 {
+        let Run { owner, force_n, .. } = &self.runs[run as usize];
+        if *owner == self.pair[0].0 { *force_n } else { -force_n }
+    }
+
+    /// The force of a patch: of its run, and of the one that lies on it.
+    fn joined_n(&self, &(_, _, run, opposite): &PairRun) -> Vec3 {
+        self.on_lower_n(run) + if opposite == NONE { Vec3::zeros() } else { self.on_lower_n(opposite) }
+    }
+
+    fn is_along(&self, force_n: &Vec3) -> bool {
+        force_n.dot(&self.whole_n) > 0.0
+            && force_n.cross(&self.whole_n).norm() < TILT * force_n.norm() * self.whole_n.norm()
+    }
+
+    /// Whether all faces with which one of the blocks presses are pressed along the force, but for what hardly counts.
+    fn is_flat(&self) -> bool {
+        let is_lower = |run: u32| self.runs[run as usize].owner == self.pair[0].0;
+        [true, false].into_iter().any(|lower| {
+            let (mut along_n, mut beside_n) = (0.0, 0.0);
+            for &(_, _, run, _) in self.pair.iter().filter(|(_, _, run, _)| is_lower(*run) == lower) {
+                let force_n = self.on_lower_n(run);
+                let sum = if self.is_along(&force_n) { &mut along_n } else { &mut beside_n };
+                *sum += force_n.norm();
+            }
+            along_n > 0.0 && beside_n <= 2.0 * BESIDE * along_n
+        })
+    }
+
+    /// Which patches bear friction, the largest of those that are pressed along the force or all of them, with their weight and that of the others; none where no patch does, or
+    /// others hardly count.
+    fn bearers(&self, largest: bool) -> Option<(impl Fn(&PairRun) -> bool, f64, f64)> {
+        let (mut best, mut most_n, mut along_n, mut all_n) = (None, 0.0, 0.0, 0.0);
+        for patch in self.pair.iter().filter(|(_, _, run, opposite)| opposite >= run) {
+            let force_n = self.joined_n(patch);
+            let size_n = force_n.norm();
+            all_n += size_n;
+            if self.is_along(&force_n) {
+                along_n += size_n;
+                if best.is_none() || size_n > most_n {
+                    (best, most_n) = (Some(patch.2), size_n);
+                }
+            }
+        }
+        let best = best?;
+        let own_n = if largest { most_n } else { along_n };
+        let part = ((all_n - own_n) / own_n / BESIDE - 1.0).min(1.0);
+        let bears = move |patch: &PairRun| {
+            if largest { patch.2 == best } else { self.is_along(&self.joined_n(patch)) }
+        };
+        (part > 0.0).then(|| (bears, 1.0 + part * (self.whole_n.norm() / own_n - 1.0), 1.0 - part))
+    }
 }
 
 /// Patches that are put one after the other.
