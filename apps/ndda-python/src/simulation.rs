@@ -253,8 +253,9 @@ impl Simulation {
     /// The label: `accurate`, `inaccurate`, `sensitive` or `stopped`.
     ///
     /// After the last step it is that of `ndda run`, which runs some scenes again: where blocks hit several times or disturb each
-    /// other, this takes as long as the run, once. Before the last step, after forces, velocities or changes of the scene, and
-    /// with a law of one's own, it judges the steps that were taken.
+    /// other, this takes as long as the run, once. After forces, velocities or changes of what acts on blocks, and with a law of
+    /// one's own, steps cannot be taken again: where blocks hit several times, the label is then `inaccurate`, since errors of
+    /// impacts may have grown. Before the last step, it judges the steps that were taken.
     ///
     /// Examples
     /// --------
@@ -267,7 +268,10 @@ impl Simulation {
         Ok(judged(py, self.pool.as_ref(), &mut self.driver)?.word.as_str())
     }
 
-    /// Why the label is not `accurate`.
+    /// Why the label is not `accurate`, or what of an `accurate` simulation is not known.
+    ///
+    /// The second is so where blocks may disturb each other, and steps cannot be taken again from a slightly different start (see
+    /// `label`).
     ///
     /// Examples
     /// --------

@@ -163,3 +163,26 @@ def test_a_block_that_has_turned_is_not_held_without_turning() -> None:
     simulation.run(until=0.25)
     with pytest.raises(ValueError, match="has rotated by"):
         simulation.hold("block", ndda.builders.Region.Set("z_min"))
+
+
+GRAIN = SCENES / "extreme" / "small_between_large.ron"
+
+
+def test_changes_that_act_on_no_block_leave_the_label_that_a_run_has() -> None:
+    summary = ndda.run(ndda.load(GRAIN))
+    simulation = ndda.Simulation(ndda.load(GRAIN))
+    simulation.step(100)
+    simulation.change(title='"another"', monitors=[], **{"output.frames": 3})
+    simulation.run()
+    assert summary["label"]["word"] == "inaccurate" and summary["label"]["reasons"] == simulation.reasons
+    assert simulation.state_crc32 == summary["state_crc32"]
+
+
+def test_a_grain_that_is_struck_is_not_called_accurate_without_half_the_step() -> None:
+    simulation = ndda.Simulation(ndda.load(GRAIN))
+    simulation.step(100)
+    grain = simulation.block_names[1]
+    simulation.set_velocity(grain, simulation.blocks[grain].velocity.mean(axis=0))
+    simulation.run()
+    assert simulation.label == "inaccurate"
+    assert "was not repeated with half the step, since a velocity was set at t = " in simulation.reasons[0]

@@ -1,6 +1,7 @@
 //! A simulation that somebody else steps: a script, a notebook, another program.
 
 mod change;
+mod drive;
 mod judged;
 mod saved;
 
@@ -10,11 +11,10 @@ use std::sync::Arc;
 use ndda_contact::FacetContact;
 use ndda_io::diagnostic::SceneErrors;
 use ndda_io::{checkpoint, read};
-use ndda_solver::{
-    DriveError, RestoreError, Sample, Settled, Simulation, SinkError, Snapshot, StartSnapshot, StepError,
-};
+use ndda_solver::{RestoreError, Sample, Settled, Simulation, SinkError, Snapshot, StartSnapshot, StepError};
 
 pub use change::ChangeError;
+pub use judged::{Disturbance, Disturbed};
 pub use ndda_mesh::{BlockId, Vec3};
 pub use saved::{LoadError, SaveError};
 
@@ -74,7 +74,7 @@ pub struct DriverSnapshot {
     scene: String,
     snapshot: Snapshot,
     stopped: Option<StepError>,
-    is_undisturbed: bool,
+    disturbed: Option<Disturbed>,
 }
 
 /// Why a snapshot cannot be restored.
@@ -126,15 +126,15 @@ impl Driver {
         }
         let start = model.simulation.sample()?;
         let origin = model.loaded.text.as_str().into();
-        let mut driver = Self::around(model, (origin, built, true), parts);
+        let mut driver = Self::around(model, (origin, built, None), parts);
         driver.history.push(start);
         Ok(driver)
     }
 
-    /// A driver of a model, with the text and the state at its start, and whether only steps have been taken since.
+    /// A driver of a model, with the text and the state at its start, and what other than steps has changed it since.
     fn around(
         model: Model,
-        (origin, built, is_undisturbed): (Arc<str>, StartSnapshot, bool),
+        (origin, built, disturbed): (Arc<str>, StartSnapshot, Option<Disturbed>),
         parts: Option<Parts>,
     ) -> Self {
         let rows = u64::from(model.loaded.scene.output.history_rows);
@@ -142,7 +142,7 @@ impl Driver {
         // Room for all rows of an ordinary run: a step allocates nothing.
         let history = Vec::with_capacity(rows.min(steps).min(ORDINARY_ROWS) as usize + 2);
         let (stopped, facets, watches_contacts) = (None, Vec::new(), false);
-        let course = Course::new(built, is_undisturbed);
+        let course = Course::new(built, disturbed);
         Self { model, steps, rows, stopped, facets, history, watches_contacts, course, origin, parts }
     }
 
@@ -223,36 +223,11 @@ impl Driver {
         contact_rows(&self.model.simulation, &mut self.facets)
     }
 
-    /// Lets a force [N] act at a block's centre of mass from now on ([`Simulation::set_force`]).
-    ///
-    /// # Errors
-    /// [`DriveError`]; nothing has changed then.
-    pub fn set_force(&mut self, block: BlockId, force_n: Vec3) -> Result<(), DriveError> {
-        self.model.simulation.set_force(block, force_n)?;
-        self.course.note_change();
-        Ok(())
-    }
-
-    /// Gives a block a velocity [m/s] and a spin [rad/s] now ([`Simulation::set_velocity`]).
-    ///
-    /// # Errors
-    /// [`DriveError`]; nothing has changed then.
-    pub fn set_velocity(
-        &mut self,
-        block: BlockId,
-        velocity_m_s: Vec3,
-        spin_rad_s: Vec3,
-    ) -> Result<(), DriveError> {
-        self.model.simulation.set_velocity(block, velocity_m_s, spin_rad_s)?;
-        self.course.note_change();
-        Ok(())
-    }
-
     /// A copy of all that changes.
     pub fn snapshot(&self) -> DriverSnapshot {
         let (origin, scene) = (self.origin.clone(), self.model.loaded.text.clone());
         let (snapshot, stopped) = (self.model.simulation.snapshot(), self.stopped.clone());
-        DriverSnapshot { origin, scene, snapshot, stopped, is_undisturbed: self.course.is_undisturbed }
+        DriverSnapshot { origin, scene, snapshot, stopped, disturbed: self.course.disturbed }
     }
 
     /// Goes on from a snapshot of the same scene, bit for bit.
@@ -272,7 +247,7 @@ impl Driver {
         }
         self.stopped.clone_from(&snapshot.stopped);
         self.course.forget_label();
-        self.course.is_undisturbed = snapshot.is_undisturbed;
+        self.course.disturbed = snapshot.disturbed;
         let step = self.simulation().state().step;
         self.history.retain(|sample| sample.step <= step);
         Ok(())

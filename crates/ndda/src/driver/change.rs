@@ -1,10 +1,11 @@
 //! What of a scene may change between two steps.
 
 use ndda_io::diagnostic::SceneErrors;
-use ndda_io::scene::{Contact, Scene};
+use ndda_io::scene::{Contact, Scene, Time};
 use ndda_solver::{StepError, TakeOverError};
 
 use super::Driver;
+use super::judged::Disturbance;
 
 /// Why a scene cannot change between two steps.
 #[derive(Debug, thiserror::Error)]
@@ -45,9 +46,13 @@ impl Driver {
         if let Some(what) = fixed_part(&self.model.loaded.scene, &model.loaded.scene) {
             return Err(ChangeError::Fixed { what });
         }
+        let moves_on = moves_alike(&self.model.loaded.scene, &model.loaded.scene);
         model.simulation.take_over(&mut self.model.simulation)?;
         self.put(model);
-        self.course.note_change();
+        match moves_on {
+            true => self.course.forget_label(),
+            false => self.note_change(Disturbance::Scene),
+        }
         Ok(())
     }
 }
@@ -67,6 +72,21 @@ fn fixed_part(old: &Scene, new: &Scene) -> Option<&'static str> {
         ("contact, but for its friction,", without_friction(&old.contact) != without_friction(&new.contact)),
     ];
     parts.into_iter().find_map(|(what, differs)| differs.then_some(what))
+}
+
+/// Whether blocks move in both scenes alike: what differs is written, watched or judged, but acts on none.
+fn moves_alike(old: &Scene, new: &Scene) -> bool {
+    let time = Time { end_s: new.time.end_s, ..old.time.clone() };
+    let watched = Scene {
+        title: new.title.clone(),
+        parameters: new.parameters.clone(),
+        time,
+        monitors: new.monitors.clone(),
+        output: new.output.clone(),
+        reference: new.reference.clone(),
+        ..old.clone()
+    };
+    watched == *new
 }
 
 /// Contact without its laws of friction.

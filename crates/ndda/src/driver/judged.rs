@@ -1,48 +1,85 @@
 //! The label of a simulation that somebody else steps.
 
+use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use ndda_solver::StartSnapshot;
+use serde::{Deserialize, Serialize};
 
 use super::Driver;
 use crate::judge::verdict;
-use crate::run::{Sensitivity, twin};
+use crate::numbers::four_figures;
+use crate::run::Sensitivity;
+use crate::run::twin::{self, Twin};
 use crate::summary::{Label, LabelWord};
+
+/// What other than a step changes a simulation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Disturbance {
+    /// [`Driver::set_force`].
+    Force,
+    /// [`Driver::set_velocity`].
+    Velocity,
+    /// [`Driver::change`] of what acts on blocks.
+    Scene,
+}
+
+/// What other than a step has changed a simulation first, so that its steps cannot be taken again for the label.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Disturbed {
+    /// What it was.
+    pub by: Disturbance,
+    /// When it was \[s\].
+    pub at_s: f64,
+}
+
+impl fmt::Display for Disturbed {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let what = match self.by {
+            Disturbance::Force => "a force was set",
+            Disturbance::Velocity => "a velocity was set",
+            Disturbance::Scene => "values of the scene were changed",
+        };
+        write!(out, "{what} at t = {} s", four_figures(self.at_s))
+    }
+}
 
 /// What decides, beside the state, whether the steps are taken again for the label.
 pub(super) struct Course {
     /// The simulation as it was built.
     built: StartSnapshot,
-    /// Whether only steps have been taken since, so that they can be taken again.
-    pub is_undisturbed: bool,
+    /// What other than steps has changed it first, so that they cannot be taken again.
+    pub disturbed: Option<Disturbed>,
     /// The label, where it has been given since the last step.
     judged: Option<Label>,
 }
 
 impl Course {
-    pub fn new(built: StartSnapshot, is_undisturbed: bool) -> Self {
-        Self { built, is_undisturbed, judged: None }
+    pub fn new(built: StartSnapshot, disturbed: Option<Disturbed>) -> Self {
+        Self { built, disturbed, judged: None }
     }
 
     /// Forgets the label that was given, which is of another state.
     pub fn forget_label(&mut self) {
         self.judged = None;
     }
-
-    /// Notes that something other than a step has changed the simulation.
-    pub fn note_change(&mut self) {
-        self.is_undisturbed = false;
-        self.forget_label();
-    }
 }
 
 impl Driver {
+    /// Notes that something other than a step has changed the simulation.
+    pub(super) fn note_change(&mut self, by: Disturbance) {
+        let at_s = self.simulation().time_s();
+        self.course.disturbed.get_or_insert(Disturbed { by, at_s });
+        self.course.forget_label();
+    }
+
     /// The simulation's label so far: a sample is taken first, so that nothing since the last one is missed.
     ///
     /// After the last step the label is that of a run: where blocks hit several times or disturb each other, the steps of an accurate scene are taken
-    /// again, from a slightly different start or with half the step. The result is kept until the next step. Before the last step, after
-    /// [`set_force`](Self::set_force), [`set_velocity`](Self::set_velocity) or [`change`](Self::change), and with parts of the caller's
-    /// own, it judges the steps that were taken.
+    /// again, from a slightly different start or with half the step. The result is kept until the next step. They cannot be taken again after
+    /// [`set_force`](Self::set_force), [`set_velocity`](Self::set_velocity) or a [`change`](Self::change) of what acts on blocks, nor with parts of the
+    /// caller's own: where a run would have been repeated, the reasons then say that it was not, and the word is `Inaccurate` if that was to be with half
+    /// the step, since errors of impacts may have grown. Before the last step, the label judges the steps that were taken.
     pub fn label(&mut self) -> Label {
         self.label_watched(&AtomicBool::new(false), &|_| {})
     }
@@ -54,34 +91,61 @@ impl Driver {
         }
         let stopped_by = self.sample().err().map(|error| format!("[{}] {error}", error.code()));
         let label = verdict::label(&self.model.simulation, stopped_by.as_deref());
-        if label.word != LabelWord::Accurate || !self.can_repeat() {
+        if label.word != LabelWord::Accurate || !self.has_ended() {
             return label;
         }
-        let label = self.repeated(stop, tell).unwrap_or(label);
+        let twins = Sensitivity::Auto.twins(&self.model.simulation);
+        let other = match self.why_not_again() {
+            _ if twins.is_empty() => None,
+            Some(why) => Some(unrepeated(&twins, &why)),
+            None => self.repeated(&twins, stop, tell),
+        };
+        let label = other.unwrap_or(label);
         if !stop.load(Ordering::Relaxed) {
             self.course.judged = Some(label.clone());
         }
         label
     }
 
-    /// Whether all steps of the scene have been taken, and nothing else has been done.
-    fn can_repeat(&self) -> bool {
-        let scene = &self.model.loaded.scene;
-        let has_ended = self.simulation().state().step >= self.steps;
-        has_ended && self.course.is_undisturbed && self.parts.is_none() && scene.stages.is_empty()
+    /// Whether all steps of the scene have been taken.
+    fn has_ended(&self) -> bool {
+        self.simulation().state().step >= self.steps && self.model.loaded.scene.stages.is_empty()
+    }
+
+    /// Why the steps cannot be taken again, where they cannot.
+    fn why_not_again(&self) -> Option<String> {
+        let has_parts = self.parts.is_some().then(|| "its friction law is not of the scene".to_string());
+        self.course.disturbed.map(|disturbed| disturbed.to_string()).or(has_parts)
     }
 
     /// The label of an accurate scene whose steps, taken again, end elsewhere.
-    fn repeated(&mut self, stop: &AtomicBool, tell: &dyn Fn(&str)) -> Option<Label> {
-        let simulation = &mut self.model.simulation;
-        let twins = Sensitivity::Auto.twins(simulation);
-        if twins.is_empty() {
-            return None;
-        }
-        tell(&twin::told(&twins));
+    fn repeated(&mut self, twins: &[Twin], stop: &AtomicBool, tell: &dyn Fn(&str)) -> Option<Label> {
+        tell(&twin::told(twins));
         let settle = self.model.loaded.scene.settle.map(crate::build::settle);
-        twin::label_of_twins(simulation, &self.course.built, settle.as_ref(), &twins, stop)
+        let simulation = &mut self.model.simulation;
+        twin::label_of_twins(simulation, &self.course.built, settle.as_ref(), twins, stop)
     }
+}
+
+/// The label of an accurate scene whose steps would be taken again, were it not for what `why` says.
+fn unrepeated(twins: &[Twin], why: &str) -> Label {
+    let (pushed, halved) =
+        (twins.iter().any(|&twin| twin != Twin::HalfStep), twins.contains(&Twin::HalfStep));
+    let (how, unknown) = match (pushed, halved) {
+        (true, true) => (
+            "from a slightly different start and with half the step",
+            "whether the motion is sensitive, and whether errors of impacts grow, is not known",
+        ),
+        (true, false) => ("from a slightly different start", "whether the motion is sensitive is not known"),
+        (false, _) => ("with half the step", "whether errors of impacts grow is not known"),
+    };
+    let cure = match halved {
+        true => "take the same steps with half of time.step_s, and compare",
+        false => "begin with velocities that differ by 1e-4 of the largest, and compare",
+    };
+    let reason = format!("the run was not repeated {how}, since {why}: {unknown}; {cure}");
+    let word = if halved { LabelWord::Inaccurate } else { LabelWord::Accurate };
+    Label { word, reasons: vec![reason] }
 }
 
 #[cfg(test)]
@@ -131,11 +195,47 @@ mod tests {
         driver.save(&file).unwrap();
         assert_eq!(at_end(Driver::load(&file, None).unwrap()).label().word, LabelWord::Inaccurate);
         driver.set_velocity(BlockId(0), Vec3::z(), Vec3::zeros()).unwrap_err();
-        assert!(driver.snapshot().is_undisturbed, "a refused change has changed nothing");
+        assert_eq!(driver.snapshot().disturbed, None, "a refused change has changed nothing");
         driver.set_velocity(BlockId(1), Vec3::new(0.0, 0.0, 0.1), Vec3::zeros()).unwrap();
         let mut driver = at_end(driver);
-        assert_eq!(driver.label().word, LabelWord::Accurate, "{:?}", driver.label().reasons);
+        let file = folder.path().join("struck");
+        driver.save(&file).unwrap();
+        for label in [driver.label(), Driver::load(&file, None).unwrap().label()] {
+            assert_eq!(label.word, LabelWord::Inaccurate);
+            let words = "not repeated with half the step, since a velocity was set at t = ";
+            assert!(label.reasons[0].contains(words), "{:?}", label.reasons);
+        }
         driver.restore(&snapshot).unwrap();
         assert_eq!(at_end(driver).label().word, LabelWord::Inaccurate);
+    }
+
+    #[test]
+    fn a_change_of_what_acts_on_no_block_keeps_the_label_of_the_run() {
+        let summary = Run::new(grain()).finish(&mut []).unwrap().summary;
+        let mut driver = Driver::new(grain()).unwrap();
+        driver.step(100).unwrap();
+        let end_s = driver.model().loaded.scene.time.end_s;
+        driver.change(&["title=\"another\"".into(), "output.frames=3".into(), "monitors=[]".into()]).unwrap();
+        driver.change(&[format!("time.end_s={}", 2.0 * end_s)]).unwrap();
+        driver.change(&[format!("time.end_s={end_s}"), "reference=None".into()]).unwrap();
+        let mut driver = at_end(driver);
+        assert_eq!(driver.label(), summary.label);
+        assert_eq!(driver.state_crc32(), summary.state_crc32);
+    }
+
+    #[test]
+    fn the_repetition_that_is_left_out_decides_what_is_not_known() {
+        let label = |twins: &[Twin]| unrepeated(twins, "a force was set at t = 1 s");
+        let (pushed, both) = (label(&[Twin::Push(1.0)]), label(&[Twin::Push(1.0), Twin::HalfStep]));
+        assert_eq!((pushed.word, both.word), (LabelWord::Accurate, LabelWord::Inaccurate));
+        assert!(
+            pushed.reasons[0]
+                .contains("since a force was set at t = 1 s: whether the motion is sensitive is not known")
+        );
+        assert!(
+            both.reasons[0].contains("and whether errors of impacts grow, is not known"),
+            "{:?}",
+            both.reasons
+        );
     }
 }

@@ -9,7 +9,7 @@ use ndda_io::{WriteError, read};
 use ndda_solver::{RestoreError, Snapshot, StepError};
 use serde::{Deserialize, Serialize};
 
-use super::{Driver, Parts, choices};
+use super::{Disturbed, Driver, Parts, choices};
 use crate::Model;
 use crate::run::{Identity, ResumeError, Run};
 
@@ -20,11 +20,11 @@ struct Saved<S = Snapshot> {
     origin: String,
     identity: Identity,
     snapshot: S,
-    /// Whether only steps have been taken since the start.
-    is_undisturbed: bool,
+    /// What other than steps has changed it since the start.
+    disturbed: Option<Disturbed>,
 }
 
-const KIND: &str = "ndda.driver/2";
+const KIND: &str = "ndda.driver/3";
 
 /// Why a driver cannot be saved.
 #[derive(Debug, thiserror::Error)]
@@ -76,7 +76,7 @@ impl Driver {
         let identity = Identity::new(stem, loaded.text.clone(), folder.join(name), &loaded.scene);
         let snapshot = self.model.simulation.snapshot_view();
         let (kind, origin) = (KIND.into(), self.origin.to_string());
-        let saved = Saved { kind, origin, identity, snapshot, is_undisturbed: self.course.is_undisturbed };
+        let saved = Saved { kind, origin, identity, snapshot, disturbed: self.course.disturbed };
         Ok(checkpoint::write_file(file, &saved)?)
     }
 
@@ -85,9 +85,9 @@ impl Driver {
     /// # Errors
     /// [`LoadError`].
     pub fn load(path: &Path, parts: Option<Parts>) -> Result<Self, LoadError> {
-        let (origin, identity, snapshot, is_undisturbed) = if path.is_dir() {
+        let (origin, identity, snapshot, disturbed) = if path.is_dir() {
             let (identity, snapshot) = Run::last_checkpoint(path)?;
-            (identity.text.clone(), identity, snapshot, true)
+            (identity.text.clone(), identity, snapshot, None)
         } else {
             let not_saved = || LoadError::NotSaved(path.display().to_string());
             let saved: Saved = match checkpoint::read_file(path) {
@@ -101,7 +101,7 @@ impl Driver {
             if saved.kind != KIND {
                 return Err(not_saved());
             }
-            (saved.origin, saved.identity, saved.snapshot, saved.is_undisturbed)
+            (saved.origin, saved.identity, saved.snapshot, saved.disturbed)
         };
         let folder = identity.folder();
         OutsideFile::verify_all(&identity.outside, folder)?;
@@ -110,6 +110,6 @@ impl Driver {
         let mut model = Model::resuming_with(loaded, folder, choices(parts.as_ref()))?;
         let built = model.simulation.start_snapshot();
         model.simulation.restore(snapshot)?;
-        Ok(Self::around(model, (origin.into(), built, is_undisturbed), parts))
+        Ok(Self::around(model, (origin.into(), built, disturbed), parts))
     }
 }
