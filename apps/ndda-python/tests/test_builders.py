@@ -6,6 +6,7 @@ import subprocess
 import sys
 
 import ndda
+import numpy as np
 import pytest
 from ndda import builders
 
@@ -69,3 +70,61 @@ def test_texts_with_quotes_and_units_are_written() -> None:
     scene.materials[0].young_pa = "Gigapascal(2)"
     checked = ndda.parse(scene)
     assert checked.title == scene.title and checked.to_builder().materials[0].young_pa == 2e9
+
+
+def box(cells: object) -> builders.Scene:
+    scene = ndda.parse(ndda.EXAMPLE).to_builder()
+    scene.blocks[0].shape = builders.Shape.Box(size_m=(1, 1, 1), cells=cells)
+    return scene
+
+
+@pytest.mark.parametrize("count", [2, 2.0, np.int64(2), np.float32(2.0)])
+def test_whole_numbers_are_counts_whoever_made_them(count: object) -> None:
+    assert ndda.parse(box((count, 1, 1))).to_builder().blocks[0].shape.cells == (2, 1, 1)
+
+
+@pytest.mark.parametrize(
+    ("part", "words"),
+    [
+        (builders.Shape.Box(size_m=(1, 1, 1), cells=(3.9, 1, 1)), "cells is 3.9: give a whole number"),
+        (builders.Shape.Box(size_m=(1, 1, 1), cells=("2", 1, 1)), "cells is '2': give a number without quotes"),
+        (builders.Shape.Box(size_m=(1, 1, 1), cells=(True, 1, 1)), "cells is True: give a whole number"),
+        (builders.Output(contacts="no"), "Output.contacts is 'no': give True or False"),
+        (builders.Output(contacts=1), "Output.contacts is 1: give True or False"),
+        (builders.Output(frames=float("nan")), "Output.frames is nan: give a finite number"),
+        (builders.Time(step_s=float("inf"), end_s=1.0), "Time.step_s is inf: give a finite number"),
+        (builders.Time(step_s=1j, end_s=1.0), "Time.step_s is 1j: give a number"),
+        (builders.Scene(title=3, time=builders.Time(end_s=1.0)), "Scene.title is 3: give a text"),
+    ],
+)
+def test_values_of_another_kind_are_refused_and_not_changed(part: builders.Builder, words: str) -> None:
+    with pytest.raises((TypeError, ValueError), match=words):
+        part.to_ron()
+
+
+def test_booleans_of_numpy_and_paths_are_written() -> None:
+    assert builders.Output(contacts=np.bool_(True)).to_ron() == "(contacts: true)"
+    assert builders.Ground.File(file=pathlib.Path("a.asc")).to_ron().count('"a.asc"') == 1
+
+
+@pytest.mark.parametrize(
+    ("fields", "words"),
+    [
+        ({}, "Scene lacks 'title' and 'time'"),
+        ({"titel": "x"}, "no field 'titel'"),
+        ({"title": 3, "time": {"end_s": 1.0}}, "Scene.title is 3"),
+        ({"title": "x", "time": {"end_s": 1.0}, "blocks": 1.0}, "Scene.blocks is 1.0: give a list"),
+    ],
+)
+def test_a_dictionary_that_is_no_scene_is_an_error_of_a_scene(fields: dict, words: str) -> None:
+    with pytest.raises(ndda.SceneError, match=words) as caught:
+        ndda.parse(fields)
+    assert caught.value.diagnostics[0]["message"] == str(caught.value)
+
+
+def test_a_part_of_the_scene_is_overridden_by_a_dictionary_or_refused_in_words() -> None:
+    assert ndda.parse(ndda.EXAMPLE, time={"step_s": 0.1, "end_s": 1.0}).steps == 10
+    with pytest.raises(TypeError, match=r"contact\.friction is .*: give an object of ndda.builders"):
+        ndda.parse(ndda.EXAMPLE, **{"contact.friction": {"friction_deg": 30}})
+    with pytest.raises(TypeError, match=r"time\.end_s is .*: give a number"):
+        ndda.parse(ndda.EXAMPLE, **{"time.end_s": object()})

@@ -7,8 +7,11 @@ The kind of a field is a word of its class's `_kinds`: ``num``, ``int``, ``str``
 from __future__ import annotations
 
 import json
+import math
+import os
 import sys
 from collections.abc import Mapping
+from numbers import Real
 from typing import Any, ClassVar, TypeVar
 
 _B = TypeVar("_B", bound="Builder")
@@ -42,14 +45,16 @@ class Builder:
     @classmethod
     def from_dict(cls: type[_B], fields: Mapping[str, Any]) -> _B:
         """Make it of a dictionary with the same fields, choices with fields being dictionaries of one key."""
+        name_of = cls.__qualname__
         unknown = [name for name in fields if name not in cls._kinds]
         if unknown:
-            raise ValueError(f"{cls.__qualname__} has no field {unknown[0]!r}: {', '.join(cls._kinds)}")
-        values = {name: _built(cls._kinds[name], value) for name, value in fields.items()}
+            raise ValueError(f"{name_of} has no field {unknown[0]!r}: {', '.join(cls._kinds)}")
+        values = {name: _built(cls._kinds[name], value, f"{name_of}.{name}") for name, value in fields.items()}
         try:
             return cls(**values)
         except TypeError as error:
-            raise ValueError(f"{cls.__qualname__}: {error}") from None
+            missing = str(error).partition("missing ")[2].partition(": ")[2]
+            raise ValueError(f"{name_of} lacks {missing}" if missing else f"{name_of}: {error}") from None
 
 
 def _class(kind: str) -> Any:
@@ -62,36 +67,73 @@ def _ron(kind: str, value: Any, where: str) -> str:
     if kind[0] in "[(<":
         if hasattr(value, "tolist"):
             value = value.tolist()
-        if isinstance(value, (str, Mapping)) or not hasattr(value, "__iter__"):
-            raise TypeError(f"{where} is {value!r}: give a list or a tuple")
-        inner = ", ".join(_ron(kind[1:-1], one, where) for one in value)
+        inner = ", ".join(_ron(kind[1:-1], one, where) for one in _row(value, where))
         return inner if kind[0] == "<" else f"{kind[0]}{inner}{kind[-1]}"
     if kind[0] == "{":
+        if not isinstance(value, Mapping):
+            raise TypeError(f"{where} is {value!r}: give a dictionary of numbers")
         return f"({', '.join(f'{name}: {_ron(kind[1:-1], one, where)}' for name, one in value.items())})"
-    if kind == "str":
-        return json.dumps(str(value), ensure_ascii=False)
-    if kind == "bool":
-        return "true" if value else "false"
+    if kind in ("num", "int", "str", "bool"):
+        return _plain(kind, value, where)
     if isinstance(value, str):
-        # A choice without fields, or a number with its unit or computed from parameters.
+        # A choice without fields.
         return value
     if isinstance(value, Mapping):
-        built = _built(kind, value)
+        built = _built(kind, value, where)
         return built if isinstance(built, str) else str(built.to_ron())
-    if kind in ("num", "int"):
-        return str(int(value)) if kind == "int" else repr(float(value))
     raise TypeError(f"{where} is {value!r}: give a {kind} of ndda.builders")
 
 
-def _built(kind: str, value: Any) -> Any:
+def _row(value: Any, where: str) -> Any:
+    if isinstance(value, (str, Mapping)) or not hasattr(value, "__iter__"):
+        raise TypeError(f"{where} is {value!r}: give a list or a tuple")
+    return value
+
+
+def _plain(kind: str, value: Any, where: str) -> str:
+    """Write a number, a text or a boolean; numbers of numpy count as those of Python."""
+    if kind == "str":
+        text = os.fspath(value) if isinstance(value, os.PathLike) else value
+        if not isinstance(text, str):
+            raise TypeError(f"{where} is {value!r}: give a text")
+        return json.dumps(text, ensure_ascii=False)
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    if kind == "bool":
+        if not isinstance(value, bool):
+            raise TypeError(f"{where} is {value!r}: give True or False")
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return _computed(value, where)
+    if isinstance(value, bool) or not isinstance(value, Real):
+        raise TypeError(f"{where} is {value!r}: give a {'whole ' if kind == 'int' else ''}number")
+    if not math.isfinite(value):
+        raise ValueError(f"{where} is {value!r}: give a finite number")
+    if kind == "num":
+        return repr(float(value))
+    if not float(value).is_integer():
+        raise ValueError(f"{where} is {value!r}: give a whole number")
+    return str(math.trunc(value))
+
+
+def _computed(text: str, where: str) -> str:
+    """A number with its unit, or computed from parameters, such as ``Millimetre(3)``."""
+    try:
+        float(text)
+    except ValueError:
+        return text
+    raise TypeError(f"{where} is {text!r}: give a number without quotes")
+
+
+def _built(kind: str, value: Any, where: str) -> Any:
     if value is None or isinstance(value, Builder):
         return value
     if kind[0] == "[":
-        return [_built(kind[1:-1], one) for one in value]
+        return [_built(kind[1:-1], one, where) for one in _row(value, where)]
     if kind[0] in "(<":
-        return tuple(_built(kind[1:-1], one) for one in value)
+        return tuple(_built(kind[1:-1], one, where) for one in _row(value, where))
     if not isinstance(value, Mapping) or kind[0] == "{":
-        return dict(value) if kind[0] == "{" else value
+        return value
     found = _class(kind)
     if isinstance(found, type) and issubclass(found, Builder):
         return found.from_dict(value)
@@ -102,5 +144,5 @@ def _built(kind: str, value: Any) -> Any:
     if not (isinstance(variant, type) and issubclass(variant, Builder)):
         raise ValueError(f"{kind} has no choice {name!r} with fields")
     if list(variant._kinds) == ["value"]:
-        return variant(value=_built(variant._kinds["value"], inner))  # type: ignore[call-arg]
+        return variant(value=_built(variant._kinds["value"], inner, where))  # type: ignore[call-arg]
     return variant.from_dict(inner)

@@ -46,7 +46,39 @@ def value_in_ron(value: object) -> str:
 
 def overrides_of(values: Mapping[str, object]) -> list[str]:
     """Values by their path as `ndda run --set` takes them."""
-    return [f"{path}={value_in_ron(value)}" for path, value in values.items()]
+    return [f"{path}={_override(path, value)}" for path, value in values.items()]
+
+
+def _override(path: str, value: object) -> str:
+    if _has_mapping(value):
+        from ndda import _builder
+        from ndda.builders import Scene as SceneBuilder
+
+        kind = SceneBuilder._kinds.get(path)
+        if kind is None:
+            raise TypeError(f"{path} is {value!r}: give an object of ndda.builders, or a text in RON")
+        return _builder._ron(kind, value, path)
+    try:
+        return value_in_ron(value)
+    except TypeError:
+        raise TypeError(f"{path} is {value!r}: give a number, a list, an object of ndda.builders, or a text in RON") from None
+
+
+def _has_mapping(value: object) -> bool:
+    return isinstance(value, Mapping) or (isinstance(value, (list, tuple)) and any(map(_has_mapping, value)))
+
+
+def _text_of(fields: Mapping[str, Any]) -> str:
+    """The text of a dictionary; what is wrong with it is an error of a scene."""
+    from ndda.builders import Scene as SceneBuilder
+
+    try:
+        return SceneBuilder.from_dict(fields).to_ron()
+    except (TypeError, ValueError) as error:
+        refused = _core.SceneError(str(error))
+        found = dict.fromkeys(("severity", "code", "path", "message", "help", "line", "column"))
+        refused.diagnostics = [{**found, "severity": "error", "code": "wrong-type", "path": "", "message": str(error)}]
+        raise refused from None
 
 
 def load(file: str | os.PathLike[str], **overrides: object) -> Scene:
@@ -56,8 +88,9 @@ def load(file: str | os.PathLike[str], **overrides: object) -> Scene:
     ----------
     file : path
         The scene.
-    **overrides : number, bool, tuple, list, str, builder or None
-        Values by their path in the scene; a string is RON, so that a text is quoted twice.
+    **overrides : number, bool, tuple, list, str, builder, dictionary or None
+        Values by their path in the scene; a string is RON, so that a text is quoted twice. A dictionary has all fields of a
+        part of the scene, such as ``time={"step_s": 0.01, "end_s": 1.0}``.
 
     Returns
     -------
@@ -101,6 +134,8 @@ def parse(
     ------
     SceneError
         As `load`.
+    TypeError, ValueError
+        A value of a builder has the wrong type: a text where a number belongs, a fraction where a count does.
 
     Examples
     --------
@@ -115,13 +150,14 @@ def parse(
     """
     if isinstance(scene, str):
         text = scene
+    elif isinstance(scene, Mapping):
+        text = _text_of(scene)
     else:
         from ndda.builders import Scene as SceneBuilder
 
-        built = SceneBuilder.from_dict(scene) if isinstance(scene, Mapping) else scene
-        if not isinstance(built, SceneBuilder):
-            raise TypeError(f"{built!r} is not a scene: give a text, a dictionary, or a builders.Scene; `load` reads files")
-        text = built.to_ron()
+        if not isinstance(scene, SceneBuilder):
+            raise TypeError(f"{scene!r} is not a scene: give a text, a dictionary, or a builders.Scene; `load` reads files")
+        text = scene.to_ron()
     return Scene._parse(text, overrides_of(overrides), os.fspath(folder))
 
 
