@@ -22,6 +22,16 @@ pub enum ChangeError {
         /// The part of the scene.
         what: &'static str,
     },
+    /// The scene would have ended before now.
+    #[error(
+        "time.end_s is {end_s} s, and it is {time_s} s already: give a later end, or restore a snapshot from before it"
+    )]
+    Past {
+        /// The end \[s\].
+        end_s: f64,
+        /// The time now \[s\].
+        time_s: f64,
+    },
     /// The simulation cannot go on.
     #[error("the simulation has stopped ({0}): restore a snapshot first")]
     Stopped(StepError),
@@ -46,12 +56,22 @@ impl Driver {
         if let Some(what) = fixed_part(&self.model.loaded.scene, &model.loaded.scene) {
             return Err(ChangeError::Fixed { what });
         }
+        self.refuse_past(model.loaded.scene.time.end_s, crate::build::steps(&model.loaded.scene.time))?;
         let moves_on = moves_alike(&self.model.loaded.scene, &model.loaded.scene);
         model.simulation.take_over(&mut self.model.simulation)?;
         self.put(model);
         match moves_on {
             true => self.course.forget_label(),
             false => self.note_change(Disturbance::Scene),
+        }
+        Ok(())
+    }
+
+    /// Refuses another end than the scene has, after so many steps, that lies before the present one.
+    fn refuse_past(&self, end_s: f64, steps: u64) -> Result<(), ChangeError> {
+        let simulation = &self.model.simulation;
+        if steps < simulation.state().step && steps != self.steps {
+            return Err(ChangeError::Past { end_s, time_s: simulation.time_s() });
         }
         Ok(())
     }
@@ -135,6 +155,19 @@ mod tests {
             "{refused:?}"
         );
         driver.change(&["output.frames=3".into()]).unwrap();
+    }
+
+    #[test]
+    fn an_end_that_is_past_is_refused_and_the_present_one_is_not() {
+        let mut driver = fall("contact: Off,");
+        driver.step(50).unwrap();
+        let refused = driver.change(&["time.end_s=0.4".into()]);
+        assert!(matches!(refused, Err(ChangeError::Past { end_s: 0.4, .. })), "{refused:?}");
+        assert_eq!(driver.steps(), 100);
+        driver.change(&["time.end_s=0.5".into()]).unwrap();
+        assert_eq!(driver.steps(), 50);
+        driver.step(10).unwrap();
+        driver.change(&["title=\"beyond the end\"".into()]).unwrap();
     }
 
     const HOLD: &str = "supports=[(block: \"block\", on: Set(\"z_min\"), hold: Fixed)]";
