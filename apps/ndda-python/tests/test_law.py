@@ -5,6 +5,7 @@ import pathlib
 import ndda
 import numpy as np
 import pytest
+from ndda._law import Facets
 
 SCENES = pathlib.Path(__file__).resolve().parents[3] / "scenes"
 RAMP = SCENES / "sliding_45_phi35_spring.ron"
@@ -16,7 +17,7 @@ class Spring:
     def __init__(self, friction_deg: float, stiffness_pa_m: float) -> None:
         self.tangent, self.stiffness_pa_m = np.tan(np.radians(friction_deg)), stiffness_pa_m
 
-    def __call__(self, facets: ndda._law.Facets) -> np.ndarray:
+    def __call__(self, facets: Facets) -> np.ndarray:
         trial = facets.shear - self.stiffness_pa_m * facets.area[:, None] * facets.slip
         size = np.linalg.norm(trial, axis=1)
         most = self.tangent * np.maximum(facets.normal_force, 0.0)
@@ -47,7 +48,7 @@ def test_a_law_keeps_numbers_of_each_facet_in_snapshots() -> None:
         state_len = 1
         seen = 0.0
 
-        def __call__(self, facets: ndda._law.Facets) -> np.ndarray:
+        def __call__(self, facets: Facets) -> np.ndarray:
             facets.state[:] += 1.0
             self.seen = facets.state.max()
             return super().__call__(facets)
@@ -64,7 +65,7 @@ def test_a_law_keeps_numbers_of_each_facet_in_snapshots() -> None:
 
 
 def test_what_a_law_raises_comes_out_of_step() -> None:
-    def broken(facets: ndda._law.Facets) -> np.ndarray:
+    def broken(facets: Facets) -> np.ndarray:
         raise LookupError("no such rock")
 
     simulation = ndda.Simulation(ndda.load(RAMP), law=broken)
@@ -76,9 +77,30 @@ def test_what_a_law_raises_comes_out_of_step() -> None:
 
 @pytest.mark.parametrize(
     ("answer", "words"),
-    [(lambda facets: np.zeros(3), "make it"), (lambda facets: np.full((len(facets), 3), np.nan), "not finite")],
+    [
+        (lambda facets: np.zeros(3), "make it"),
+        (lambda facets: np.full((len(facets), 3), np.nan), "not finite"),
+        (lambda facets: 1j * facets.slip, "complex forces: give real ones"),
+    ],
 )
 def test_forces_that_cannot_be_used_are_refused(answer: object, words: str) -> None:
     simulation = ndda.Simulation(ndda.load(RAMP), law=answer)
-    with pytest.raises(ValueError, match=words):
+    with pytest.raises((TypeError, ValueError), match=words):
         simulation.run(until=0.1)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "words"),
+    [
+        ("state_len", 10**12, "at most 1000 numbers of each facet, 8 kB of memory"),
+        ("state_len", -1, "state_len of the law is -1: give at least 0"),
+        ("state_len", 1.5, "state_len of the law is 1.5: give a whole number"),
+        ("stiffness_pa_m", -1.0, "stiffness_pa_m of the law is -1.0: give 0 or more"),
+        ("stiffness_pa_m", np.nan, "stiffness_pa_m of the law is nan: give 0 or more"),
+    ],
+)
+def test_numbers_of_a_law_that_cannot_be_are_refused(name: str, value: object, words: str) -> None:
+    law = Spring(35.0, 2e8)
+    setattr(law, name, value)
+    with pytest.raises((TypeError, ValueError), match=words):
+        ndda.Simulation(ndda.load(RAMP), law=law)

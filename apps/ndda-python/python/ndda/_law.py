@@ -8,6 +8,10 @@ from typing import Any, Protocol
 import numpy as np
 import numpy.typing as npt
 
+from ndda._checks import finite, whole
+
+_MOST_STATE = 1000
+
 
 @dataclass(frozen=True)
 class Facets:
@@ -56,7 +60,11 @@ class Facets:
 
 
 class Law(Protocol):
-    """What `Simulation(law=…)` takes: gives the shear force on each facet [N], shape (facets, 3)."""
+    """What `Simulation(law=…)` takes: gives the shear force on each facet [N], shape (facets, 3).
+
+    It may have `stiffness_pa_m`, that of its springs [Pa/m], and `state_len`, how many numbers of its own are kept of each
+    facet, at most 1000.
+    """
 
     def __call__(self, facets: Facets, /) -> npt.NDArray[np.float64]:
         """Shear force on each facet [N]."""
@@ -69,7 +77,10 @@ def adapted_law(law: Law) -> dict[str, Any]:
 
     def call(given: dict[str, Any]) -> npt.NDArray[np.float64]:
         facets = Facets(**given)
-        force = np.asarray(law(facets), dtype=np.float64)
+        answer = np.asarray(law(facets))
+        if np.iscomplexobj(answer):
+            raise TypeError("the law gave complex forces: give real ones")
+        force = answer.astype(np.float64, copy=False)
         if force.shape != (len(facets), 3):
             raise ValueError(f"the law gave forces of shape {force.shape}: make it ({len(facets)}, 3)")
         if not np.isfinite(force).all():
@@ -78,6 +89,21 @@ def adapted_law(law: Law) -> dict[str, Any]:
 
     return {
         "law": call,
-        "law_state": int(getattr(law, "state_len", 0)),
-        "law_stiffness": float(getattr(law, "stiffness_pa_m", 0.0)),
+        "law_state": _state_len(law),
+        "law_stiffness": _stiffness_pa_m(law),
     }
+
+
+def _state_len(law: Law) -> int:
+    state_len = whole("state_len of the law", getattr(law, "state_len", 0), 0)
+    if state_len > _MOST_STATE:
+        size = f"{_MOST_STATE} numbers of each facet, 8 kB of memory"
+        raise ValueError(f"state_len of the law is {state_len}: a law keeps at most {size}")
+    return state_len
+
+
+def _stiffness_pa_m(law: Law) -> float:
+    stiffness = finite("stiffness_pa_m of the law", getattr(law, "stiffness_pa_m", 0.0), "0 or more [Pa/m]")
+    if stiffness < 0.0:
+        raise ValueError(f"stiffness_pa_m of the law is {stiffness}: give 0 or more [Pa/m]")
+    return stiffness
