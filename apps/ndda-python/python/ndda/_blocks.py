@@ -9,11 +9,12 @@ if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
+    from ndda._driven import Which
     from ndda._simulation import Simulation
 
 
 class Blocks:
-    """The blocks of a simulation; an index is a name or a pattern such as ``"cube_*"``.
+    """The blocks of a simulation; an index is a name, a pattern such as ``"cube_*"``, a number, or a list of them.
 
     Examples
     --------
@@ -26,9 +27,9 @@ class Blocks:
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
 
-    def __getitem__(self, pattern: str) -> BlockSelection:
-        """Blocks with matching names; KeyError if there is none."""
-        return BlockSelection(self._simulation, pattern)
+    def __getitem__(self, which: Which) -> BlockSelection:
+        """Blocks with matching names or these numbers; KeyError or IndexError if there is none."""
+        return BlockSelection(self._simulation, which)
 
     def __iter__(self) -> Iterator[str]:
         """Names in the order of the scene.
@@ -52,7 +53,7 @@ class Blocks:
 
 
 class BlockSelection:
-    """Blocks that a pattern of names matches.
+    """Blocks that a pattern of names or a list names.
 
     Examples
     --------
@@ -63,9 +64,9 @@ class BlockSelection:
     1.0
     """
 
-    def __init__(self, simulation: Simulation, pattern: str) -> None:
-        self._simulation, self._pattern = simulation, pattern
-        self._indices = simulation._blocks(pattern)
+    def __init__(self, simulation: Simulation, which: Which) -> None:
+        self._simulation, self._which = simulation, which
+        self._indices = simulation._blocks(which)
 
     @property
     def names(self) -> list[str]:
@@ -92,7 +93,7 @@ class BlockSelection:
         >>> simulation.blocks["b*"].nodes.tolist()
         [0, 1, 2, 3, 4, 5, 6, 7]
         """
-        return self._simulation.nodes(self._pattern)
+        return self._simulation.nodes(self._which)
 
     @property
     def position(self) -> npt.NDArray[np.float64]:
@@ -168,7 +169,7 @@ class BlockSelection:
         >>> simulation = ndda.Simulation(ndda.parse(ndda.EXAMPLE))
         >>> simulation.blocks["b*"].set_force((0, 0, 100.0))
         """
-        self._simulation.set_force(self._pattern, force)
+        self._simulation.set_force(self._which, force)
 
     def set_velocity(self, velocity: Sequence[float], spin: Sequence[float] = (0.0, 0.0, 0.0)) -> None:
         """Give each a velocity [m/s] and a spin [rad/s] now, as `Simulation.set_velocity`.
@@ -179,7 +180,7 @@ class BlockSelection:
         >>> simulation = ndda.Simulation(ndda.parse(ndda.EXAMPLE))
         >>> simulation.blocks["b*"].set_velocity((1.0, 0, 0))
         """
-        self._simulation.set_velocity(self._pattern, velocity, spin)
+        self._simulation.set_velocity(self._which, velocity, spin)
 
     def __len__(self) -> int:
         """How many there are."""
@@ -187,4 +188,4 @@ class BlockSelection:
 
     def __repr__(self) -> str:
         """The pattern and the names in short."""
-        return f"<{len(self)} blocks {self._pattern!r}: {', '.join(self.names[:4])}>"
+        return f"<{len(self)} blocks {self._which!r}: {', '.join(self.names[:4])}>"

@@ -3,30 +3,26 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
-from fnmatch import fnmatchcase
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from ndda import _core
+from ndda._arrays import _HISTORY
 from ndda._blocks import Blocks
+from ndda._checks import MOST_STEPS, finite, whole
+from ndda._driven import Driven
 from ndda._progress import Progress
-from ndda._scene import overrides_of, parse
+from ndda._scene import parse
 
 if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
     from matplotlib.axes import Axes
 
     from ndda._law import Law
     from ndda._view import Page
-    from ndda.builders import HoldChoice, RegionChoice
     from ndda.builders import Scene as SceneBuilder
 
-_FORCES = ("force", "friction", "center", "moment")
-_HISTORY = _core._HISTORY
 
-
-class Simulation(_core.Simulation):
+class Simulation(Driven):
     """A scene on its way through time.
 
     State and label after the scene's last step are those of `ndda run`, bit for bit, however the steps are taken; for the
@@ -61,6 +57,11 @@ class Simulation(_core.Simulation):
     (50, 'accurate')
     """
 
+    __slots__ = ("__weakref__", "_folder", "_frames", "_law")
+    _folder: Any
+    _frames: list[tuple[float, str]]
+    _law: object
+
     def __new__(
         cls,
         scene: _core.Scene | SceneBuilder,
@@ -89,8 +90,8 @@ class Simulation(_core.Simulation):
     def _begin(self, contacts: bool, law: object) -> None:
         self._keeps_contacts = contacts
         self._law = law
-        self._frames: list[tuple[float, str]] = []
-        self._folder: Any = None
+        self._frames = []
+        self._folder = None
         warnings = self._warnings()
         if warnings:
             import logging
@@ -112,13 +113,13 @@ class Simulation(_core.Simulation):
         Parameters
         ----------
         until : float, optional
-            Time [s], rounded to the nearest step; the end of the scene otherwise.
+            Time [s], rounded to the nearest step; the end of the scene otherwise, also one that `callback` changes.
         every : int, optional
             Steps between calls of `callback`; 1 otherwise.
         callback : callable, optional
             Called with the simulation; what it raises ends the run.
         frames : int
-            Frames to keep for `show`, evenly spaced, beside that of the start.
+            Frames to keep for `show`, evenly spaced, beside that of the start; at most one of each step.
         progress : bool
             Whether runs of more than a second show a bar, where tqdm is installed.
 
@@ -127,7 +128,7 @@ class Simulation(_core.Simulation):
         StopError
             A step would have given a wrong number.
         ValueError
-            `until` lies in the past or is no time, or `every` or `frames` is no number.
+            `until` or the end of the scene lies in the past, or `every` or `frames` is too small.
 
         Examples
         --------
@@ -137,160 +138,46 @@ class Simulation(_core.Simulation):
         >>> times
         [0.1, 0.2, 0.3]
         """
-        if every is not None and every < 1:
-            raise ValueError(f"every is {every}: give at least 1 step")
-        if frames < 0:
-            raise ValueError(f"frames is {frames}: give at least 0")
-        if until is not None and not abs(until) < float("inf"):
-            raise ValueError(f"until is {until}: give a time [s]")
-        last = self.steps if until is None else round(until / self.step_s)
-        first = self.step_count
-        if last < first:
-            raise ValueError(f"until is {until} s, and it is {self.time_s} s already: restore a snapshot")
-        shown = sorted({first + round(k * (last - first) / frames) for k in range(frames + 1)} if frames else ())
-        if shown:
+        every = 1 if every is None else whole("every", every, 1)
+        if callback is not None and not callable(callback):
+            raise TypeError(f"callback is {callback!r}: give a function of the simulation")
+        first, last = self.step_count, self._last_step(until)
+        if whole("frames", frames, 0):
             self.keep_frame()
+        frames = min(frames, last - first)
+        spacing = (last - first) / frames if frames else 0.0
         with Progress(last - first, wanted=progress) as bar:
             while (done := self.step_count) < last:
-                to = last if callback is None else min(last, done + (every or 1))
-                frame = next((step for step in shown if step > done), last)
+                to = last if callback is None else min(last, done + every)
+                frame = _next_frame(first, done, spacing) if frames else last
                 left = min(to, frame) - done
                 while left > 0:
                     left = self._some_steps(left)
                     bar.show(self.step_count - first)
-                if shown and self.step_count == frame:
+                if frames and self.step_count == frame:
                     self.keep_frame()
-                if callback is not None and self._is_due(first, last, every or 1):
+                if callback is not None and self._is_due(first, last, every):
                     callback(self)
+                    last = self.steps if until is None else last
+
+    def _last_step(self, until: float | None) -> int:
+        """The step at which a run ends."""
+        now, time_s = self.step_count, self.time_s
+        if until is None:
+            if self.steps < now:
+                end_s = self.scene.end_s
+                raise ValueError(f"the scene ends at {end_s} s, and it is {time_s} s already: give until, or change time.end_s")
+            return self.steps
+        last = finite("until", until, "a time [s]") / self.step_s
+        if last > MOST_STEPS:
+            raise ValueError(f"until is {until} s, or {last:.3g} steps: give an earlier time")
+        if round(last) < now:
+            raise ValueError(f"until is {until} s, and it is {time_s} s already: restore a snapshot")
+        return round(last)
 
     def _is_due(self, first: int, last: int, every: int) -> bool:
         done = self.step_count
         return done == last or (done - first) % every == 0
-
-    def array(self, name: str, out: npt.NDArray[np.float64] | None = None) -> npt.NDArray[np.float64]:
-        """Copy a quantity of the nodes.
-
-        Parameters
-        ----------
-        name : {"position", "displacement", "velocity", "acceleration"}
-            Global coordinates [m, m, m/s, m/s²].
-        out : array of shape (nodes, 3), optional
-            Where to write it; a new read-only array otherwise.
-
-        Returns
-        -------
-        array of shape (nodes, 3)
-
-        Examples
-        --------
-        >>> import ndda, numpy
-        >>> simulation = Simulation(ndda.parse(ndda.EXAMPLE))
-        >>> room = numpy.empty(simulation.position.shape)
-        >>> simulation.array("velocity", out=room) is room
-        True
-        """
-        if out is None:
-            return self._nodes(name)
-        self._fill_nodes(name, out)
-        return out
-
-    @property
-    def position(self) -> npt.NDArray[np.float64]:
-        """Position of each node [m], shape (nodes, 3), a read-only copy.
-
-        Examples
-        --------
-        >>> import ndda
-        >>> float(Simulation(ndda.parse(ndda.EXAMPLE)).position.max())
-        1.0
-        """
-        return self._nodes("position")
-
-    @property
-    def displacement(self) -> npt.NDArray[np.float64]:
-        """Displacement of each node since the start [m], shape (nodes, 3), a read-only copy.
-
-        Examples
-        --------
-        >>> import ndda
-        >>> float(Simulation(ndda.parse(ndda.EXAMPLE)).displacement.max())
-        0.0
-        """
-        return self._nodes("displacement")
-
-    @property
-    def velocity(self) -> npt.NDArray[np.float64]:
-        """Velocity of each node [m/s], shape (nodes, 3), a read-only copy.
-
-        Examples
-        --------
-        >>> import ndda
-        >>> Simulation(ndda.parse(ndda.EXAMPLE)).velocity.shape
-        (8, 3)
-        """
-        return self._nodes("velocity")
-
-    @property
-    def acceleration(self) -> npt.NDArray[np.float64]:
-        """Acceleration of each node [m/s²], shape (nodes, 3), a read-only copy.
-
-        Examples
-        --------
-        >>> import ndda
-        >>> Simulation(ndda.parse(ndda.EXAMPLE)).acceleration.shape
-        (8, 3)
-        """
-        return self._nodes("acceleration")
-
-    @property
-    def contacts(self) -> npt.NDArray[Any]:
-        """Pairs of blocks that touched in the last step, a structured array.
-
-        Fields are `first` and `second` (blocks, numbered from 0), `force`, `friction` [N], `center` [m], `moment` [N m]
-        of shape (3,), `area` [m²], `depth` [m], and `sliding`, the part of the area that slides.
-
-        Examples
-        --------
-        >>> import ndda
-        >>> len(Simulation(ndda.parse(ndda.EXAMPLE), contacts=True).contacts)
-        0
-        """
-        import numpy as np
-
-        if not self._keeps_contacts:
-            raise ValueError("contacts are not kept: make the simulation with contacts=True")
-        rows = self._contacts()
-        fields: list[Any] = [("first", "i8"), ("second", "i8"), *((name, "f8", (3,)) for name in _FORCES)]
-        table = np.zeros(len(rows), dtype=[*fields, ("area", "f8"), ("depth", "f8"), ("sliding", "f8")])
-        table["first"], table["second"] = rows[:, 1], rows[:, 2]
-        for index, name in enumerate(_FORCES):
-            table[name] = rows[:, 3 + 3 * index : 6 + 3 * index]
-        table["area"], table["depth"], table["sliding"] = rows[:, 15], rows[:, 16], rows[:, 17]
-        table.flags.writeable = False
-        return table
-
-    @property
-    def history(self) -> npt.NDArray[Any]:
-        """Energies and works [J] over `time_s` [s], a structured array with a row for each row of a run's history.
-
-        ``pandas.DataFrame(simulation.history)`` makes a table of it.
-
-        Examples
-        --------
-        >>> import ndda
-        >>> simulation = Simulation(ndda.parse(ndda.EXAMPLE))
-        >>> simulation.run()
-        >>> float(simulation.history["time_s"][-1])
-        1.0
-        """
-        import numpy as np
-
-        rows = self._history()
-        table = np.zeros(len(rows), dtype=[(name, "f8") for name in _HISTORY])
-        for index, name in enumerate(_HISTORY):
-            table[name] = rows[:, index]
-        table.flags.writeable = False
-        return table
 
     @property
     def blocks(self) -> Blocks:
@@ -316,203 +203,6 @@ class Simulation(_core.Simulation):
         True
         """
         return self._law is None
-
-    def nodes(self, pattern: str) -> npt.NDArray[np.int64]:
-        """Find the nodes of blocks by name.
-
-        Parameters
-        ----------
-        pattern : str
-            Name of a block, or a pattern such as ``"cube_*"``.
-
-        Returns
-        -------
-        array of int
-            Rows of the arrays of nodes.
-
-        Raises
-        ------
-        KeyError
-            No block has such a name.
-
-        Examples
-        --------
-        >>> import ndda
-        >>> simulation = Simulation(ndda.parse(ndda.EXAMPLE))
-        >>> simulation.nodes("bl*").tolist()
-        [0, 1, 2, 3, 4, 5, 6, 7]
-        """
-        import numpy as np
-
-        starts = self._node_starts()
-        found = self._blocks(pattern)
-        return np.concatenate([np.arange(starts[i], starts[i + 1], dtype=np.int64) for i in found])
-
-    def set_force(self, pattern: str, force: Sequence[float]) -> None:
-        """Let a force act at the centre of mass of blocks from now on.
-
-        Its impulse and its work are in the balances of momentum and energy.
-
-        Parameters
-        ----------
-        pattern : str
-            Name of a block, or a pattern such as ``"cube_*"``.
-        force : sequence of 3 floats
-            Force on each block [N], beside the loads of the scene, until another one is set; zeros take it away.
-
-        Raises
-        ------
-        KeyError
-            No block has such a name.
-        ValueError
-            A block is fixed, or the force is not finite.
-
-        Examples
-        --------
-        >>> import ndda
-        >>> simulation = Simulation(ndda.parse(ndda.EXAMPLE))
-        >>> simulation.set_force("block", (0, 0, 2600 * 9.81))
-        >>> simulation.run()
-        >>> round(float(simulation.displacement[0, 2]), 9) + 0.0
-        0.0
-        """
-        for block in self._blocks(pattern):
-            self._set_force(block, force)
-
-    def set_velocity(
-        self, pattern: str, velocity: Sequence[float], spin: Sequence[float] = (0.0, 0.0, 0.0)
-    ) -> None:
-        """Give blocks a velocity now, as a blow would.
-
-        The impulse and the change of kinetic energy are in the balances of momentum and energy.
-
-        Parameters
-        ----------
-        pattern : str
-            Name of a block, or a pattern such as ``"cube_*"``.
-        velocity : sequence of 3 floats
-            Velocity of the centre of mass of each block [m/s].
-        spin : sequence of 3 floats
-            Angular velocity about it [rad/s].
-
-        Raises
-        ------
-        KeyError
-            No block has such a name.
-        ValueError
-            A block is fixed, its supports prescribe velocities, or a component is not finite.
-
-        Examples
-        --------
-        >>> import ndda
-        >>> simulation = Simulation(ndda.parse(ndda.EXAMPLE))
-        >>> simulation.set_velocity("block", (1, 0, 0))
-        >>> simulation.step()
-        >>> round(float(simulation.velocity[0, 0]), 9)
-        1.0
-        """
-        for block in self._blocks(pattern):
-            self._set_velocity(block, velocity, spin)
-
-    def change(self, **overrides: object) -> None:
-        """Change values of the scene from now on: gravity, loads, water, friction, `time.end_s`, monitors, output.
-
-        The potential energy that jumps with a load is in the energy balance as work of loads. A snapshot from before goes
-        back to the scene as it was.
-
-        Parameters
-        ----------
-        **overrides
-            Values by their path in the scene, as those of `load`.
-
-        Raises
-        ------
-        SceneError
-            The changed scene cannot be used.
-        ValueError
-            Such a value cannot change between steps.
-
-        Examples
-        --------
-        >>> import ndda
-        >>> simulation = Simulation(ndda.parse(ndda.EXAMPLE))
-        >>> simulation.run(until=0.5)
-        >>> simulation.change(gravity_m_s2=(0, 0, 9.81))
-        >>> simulation.run()
-        >>> round(float(simulation.velocity[0, 2]), 9) + 0.0, simulation.label
-        (0.0, 'accurate')
-        """
-        self._change(overrides_of(overrides))
-
-    def hold(self, pattern: str, on: RegionChoice = "All", hold: HoldChoice = "Fixed") -> None:
-        """Hold blocks where they are from now on.
-
-        Nodes that move stop at once: their momentum and kinetic energy are in the balances, as impulse and work of loads.
-
-        Parameters
-        ----------
-        pattern : str
-            Name of a block, or a pattern such as ``"prop_*"``.
-        on : str or Region.Plane or Region.Set
-            Which part of them, such as ``ndda.builders.Region.Set("z_min")``.
-        hold : str or Hold.Direction
-            ``"Fixed"``, all three components, or ``"Normal"``, the component along the normal of the region's plane.
-
-        Raises
-        ------
-        SceneError
-            No block has such a name, or it has no such part.
-        ValueError
-            The support would count from where the block was at the start, the block has turned too far, or the integrator
-            remembers accelerations.
-
-        Examples
-        --------
-        >>> import ndda
-        >>> simulation = Simulation(ndda.parse(ndda.EXAMPLE.replace("Rigid", "Elastic")))
-        >>> simulation.run(until=0.5)
-        >>> simulation.hold("block")
-        >>> simulation.run()
-        >>> round(float(simulation.displacement[0, 2]), 6)
-        -1.22625
-        """
-        from ndda.builders import Support
-
-        supports = self.scene.to_builder().supports or []
-        self.change(supports=[*supports, Support(block=pattern, on=on, hold=hold)])
-
-    def release(self, pattern: str) -> None:
-        """Take away the supports of blocks.
-
-        Parameters
-        ----------
-        pattern : str
-            `block` of the supports in the scene, or a pattern such as ``"prop_*"``.
-
-        Raises
-        ------
-        KeyError
-            No support has such a block.
-        ValueError
-            The integrator remembers accelerations, so that supports cannot change.
-
-        Examples
-        --------
-        >>> import ndda
-        >>> held = 'supports: [(block: "block", on: All, hold: Fixed)],)'
-        >>> body = ndda.EXAMPLE.replace("body: Rigid, ", "").rstrip()[:-1] + held
-        >>> simulation = Simulation(ndda.parse(body))
-        >>> simulation.run(until=0.5)
-        >>> simulation.release("block")
-        >>> simulation.run()
-        >>> round(float(simulation.displacement[0, 2]), 6)
-        -1.22625
-        """
-        supports = self.scene.to_builder().supports or []
-        kept = [one for one in supports if not (one.block == pattern or fnmatchcase(one.block, pattern))]
-        if len(kept) == len(supports):
-            raise KeyError(f"no support has the block {pattern!r}; there are {[one.block for one in supports]}")
-        self.change(supports=kept)
 
     def keep_frame(self) -> None:
         """Keep the present state for `show`, with the fields that the scene's `output` names.
@@ -599,12 +289,13 @@ class Simulation(_core.Simulation):
         """Title, time and steps in short."""
         return f"<ndda.Simulation {self.scene.title!r}, t = {self.time_s:g} s, step {self.step_count} of {self.steps}>"
 
-    def _blocks(self, pattern: str) -> list[int]:
-        names = self.block_names
-        found = [i for i, name in enumerate(names) if name == pattern or fnmatchcase(name, pattern)]
-        if not found:
-            raise KeyError(f"no block is called {pattern!r}; there are {', '.join(names[:8])}")
-        return found
+
+def _next_frame(first: int, done: int, spacing: float) -> int:
+    """The next step of which a frame is kept."""
+    number = int((done - first) / spacing)
+    while (frame := first + round(number * spacing)) <= done:
+        number += 1
+    return frame
 
 
 def resume(
