@@ -39,6 +39,15 @@ def test_threads_are_one_to_1024(threads: int) -> None:
             make(scene, threads=threads)
 
 
+@pytest.mark.parametrize("name", ["jobs", "threads"])
+def test_runs_at_a_time_and_their_threads_are_one_to_1024(name: str) -> None:
+    scene = ndda.parse(ndda.EXAMPLE)
+    with pytest.raises(ValueError, match=f"{name} is 20000: give at most 1024"):
+        ndda.certify(scene, **{name: 20_000})
+    with pytest.raises(ValueError, match=f"{name} is 0: give at least 1"):
+        ndda.study(scene, {"time.step_s": [0.01, 0.02]}, of=["block block.displacement_m"], **{name: 0})
+
+
 def test_a_run_after_the_end_says_when_the_scene_ended(fall: ndda.Simulation) -> None:
     fall.run(until=1.5)
     with pytest.raises(ValueError, match="the scene ends at 1.0 s, and it is 1.5 s already: give until, or change"):

@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Literal
 
 from ndda import _core
+from ndda._checks import whole
 from ndda._scene import name_of, overrides_of, scene_of
 
 if TYPE_CHECKING:
@@ -108,11 +109,15 @@ def study(
         "correlate": list(correlate),
         "sensitivity": sensitivity,
         "overrides": overrides_of(overrides),
-        "jobs": jobs,
-        "threads": threads,
+        **_at_a_time(jobs, threads),
     }
     with _folder(out) as folder, _file(scene) as file:
         return _read(_core._study(file, folder, options))
+
+
+def _at_a_time(jobs: int, threads: int) -> dict[str, int]:
+    """Runs at a time and threads of each, as many as the command takes."""
+    return {"jobs": whole("jobs", jobs, 1, 1024), "threads": whole("threads", threads, 1, 1024)}
 
 
 def _choices(values: str | Sequence[object]) -> str:
@@ -184,7 +189,7 @@ def certify(
     True
     """
     scene = scene_of(scene)
-    options = {"of": list(of), "mesh": mesh, "penalty": penalty, "jobs": jobs, "threads": threads}
+    options = {"of": list(of), "mesh": mesh, "penalty": penalty, **_at_a_time(jobs, threads)}
     with _folder(out) as folder:
         return _read(_core._certify(scene, name_of(scene), folder, options))
 
