@@ -1,36 +1,64 @@
 //! A friction law in Python: arrays in, arrays out, once a step.
 
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use ndda::build::Choices;
 use ndda::driver::Parts;
 use ndda_contact::{BatchFacet, BatchLaw};
 use ndda_mesh::Vec3;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
+use pyo3::exceptions::PyRuntimeError;
+use pyo3::gc::{PyTraverseError, PyVisit};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// The exception that a law raised last.
-pub type Raised = Arc<Mutex<Option<PyErr>>>;
+/// A law in Python of one simulation, which all that uses it shares, so that the collector of garbage knows its only owner.
+#[derive(Clone, Default)]
+pub struct Law(Arc<Held>);
+
+#[derive(Default)]
+struct Held {
+    /// Locked by whoever has Python's lock, and no longer than it takes to copy it.
+    call: Mutex<Option<Py<PyAny>>>,
+    /// The exception that it raised last.
+    raised: Mutex<Option<PyErr>>,
+}
+
+impl Law {
+    fn held(&self) -> MutexGuard<'_, Option<Py<PyAny>>> {
+        self.0.call.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Shows the callable to the collector of garbage.
+    pub fn traverse(&self, visit: &PyVisit<'_>) -> Result<(), PyTraverseError> {
+        self.0.call.try_lock().map_or(Ok(()), |call| visit.call(&*call))
+    }
+
+    /// Lets go of the callable.
+    pub fn clear(&self) {
+        // What it refers to may be freed, which may lead back here.
+        let call = self.held().take();
+        drop(call);
+    }
+}
 
 /// A callable that a simulation asks for the shear forces of all facets.
 struct PyLaw {
-    call: Py<PyAny>,
+    law: Law,
     state_len: usize,
     stiffness_pa_m: f64,
-    raised: Raised,
 }
 
-/// Parts of a simulation with a Python law, and where its exceptions are kept.
-pub fn parts(law: &Bound<'_, PyAny>, state_len: usize, stiffness_pa_m: f64) -> (Parts, Raised) {
-    let (call, raised) = (law.clone().unbind(), Raised::default());
-    let kept = raised.clone();
+/// Parts of a simulation with a Python law, and the law.
+pub fn parts(law: &Bound<'_, PyAny>, state_len: usize, stiffness_pa_m: f64) -> (Parts, Law) {
+    let call = Mutex::new(Some(law.clone().unbind()));
+    let law = Law(Arc::new(Held { call, raised: Mutex::default() }));
+    let shared = law.clone();
     let make = move || {
-        let call = Python::attach(|py| call.clone_ref(py));
-        let law = PyLaw { call, state_len, stiffness_pa_m, raised: kept.clone() };
+        let law = PyLaw { law: shared.clone(), state_len, stiffness_pa_m };
         Choices { batch_law: Some(Box::new(law)), ..Choices::default() }
     };
-    (Arc::new(make), raised)
+    (Arc::new(make), law)
 }
 
 impl BatchLaw for PyLaw {
@@ -52,7 +80,7 @@ impl BatchLaw for PyLaw {
         Python::attach(|py| {
             self.ask(py, dt_s, facets, state, force_n).map_err(|error| {
                 let words = error.to_string();
-                if let Ok(mut raised) = self.raised.lock() {
+                if let Ok(mut raised) = self.law.0.raised.lock() {
                     *raised = Some(error);
                 }
                 words
@@ -91,7 +119,9 @@ impl PyLaw {
         given.set_item("slip", vectors(|facet| facet.slip_m)?)?;
         given.set_item("shear", vectors(|facet| facet.shear_n)?)?;
         given.set_item("state", &kept)?;
-        let answer = self.call.bind(py).call1((given,))?;
+        let call = self.law.held().as_ref().map(|call| call.clone_ref(py));
+        let call = call.ok_or_else(|| PyRuntimeError::new_err("the law is gone, with its simulation"))?;
+        let answer = call.bind(py).call1((given,))?;
         let answer: PyReadonlyArray2<'_, f64> = answer.extract()?;
         let answer = answer.as_array();
         for (i, force) in force_n.iter_mut().enumerate() {
@@ -103,6 +133,6 @@ impl PyLaw {
 }
 
 /// The exception of a law in Python, where there is one.
-pub fn own_or(raised: &Raised, other: impl FnOnce() -> PyErr) -> PyErr {
-    raised.lock().ok().and_then(|mut raised| raised.take()).unwrap_or_else(other)
+pub fn own_or(law: &Law, other: impl FnOnce() -> PyErr) -> PyErr {
+    law.0.raised.lock().ok().and_then(|mut raised| raised.take()).unwrap_or_else(other)
 }

@@ -6,9 +6,12 @@
 mod arrays;
 mod begin;
 mod errors;
+mod held;
 mod law;
 mod scene;
 mod simulation;
+mod snapshot;
+mod threads;
 mod tools;
 mod watched;
 
@@ -19,7 +22,8 @@ use pyo3::types::PyTuple;
 
 use errors::{SceneError, StopError};
 use scene::Scene;
-use simulation::{Simulation, Snapshot};
+use simulation::Simulation;
+use snapshot::Snapshot;
 
 /// Does what a command line asks for, the program's name first; `program` starts it again. Returns the exit code.
 #[pyfunction]
@@ -29,6 +33,7 @@ fn _command(py: Python<'_>, args: Vec<OsString>, program: Vec<OsString>) -> u8 {
 
 #[pymodule]
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    threads::note_process();
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add("_HISTORY", PyTuple::new(module.py(), arrays::row_names())?)?;
     module.add("SceneError", module.py().get_type::<SceneError>())?;

@@ -11,7 +11,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::errors::{diagnostic, scene_error, stop_error};
-use crate::watched::{pool, watched, within};
+use crate::threads::{SHARED, Threads};
+use crate::watched::watched;
 
 /// A scene that has been read and checked; `ndda.load` and `ndda.parse` make it.
 ///
@@ -33,15 +34,15 @@ impl Scene {
     #[staticmethod]
     fn _load(py: Python<'_>, file: PathBuf, overrides: Vec<String>) -> PyResult<Self> {
         let folder = file.parent().unwrap_or(Path::new(".")).to_path_buf();
-        let loaded = py.detach(|| read::load(&file, &overrides)).map_err(|e| scene_error(py, &e))?;
-        Ok(Self { loaded, folder })
+        let loaded = SHARED.run(py, || read::load(&file, &overrides))?;
+        Ok(Self { loaded: loaded.map_err(|e| scene_error(py, &e))?, folder })
     }
 
     /// Reads the scene in a text; files that it names are in `folder`.
     #[staticmethod]
     fn _parse(py: Python<'_>, text: &str, overrides: Vec<String>, folder: PathBuf) -> PyResult<Self> {
-        let loaded = py.detach(|| read::load_text("scene.ron", text, &overrides, Some(&folder)));
-        Ok(Self { loaded: loaded.map_err(|e| scene_error(py, &e))?, folder })
+        let load = || read::load_text("scene.ron", text, &overrides, Some(&folder));
+        Ok(Self { loaded: SHARED.run(py, load)?.map_err(|e| scene_error(py, &e))?, folder })
     }
 
     /// Title of the scene.
@@ -136,7 +137,7 @@ impl Scene {
     /// >>> ndda.parse(ndda.EXAMPLE).check()
     /// []
     fn check<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
-        let model = py.detach(|| self.model(None)).map_err(|e| scene_error(py, &e))?;
+        let model = self.built(py, &SHARED)?;
         warnings(py, &model.loaded)
     }
 
@@ -159,13 +160,11 @@ impl Scene {
 
     /// Runs the scene to its end without files; the result is the text of `summary.json`.
     #[pyo3(signature = (threads=None))]
-    fn _run(&self, py: Python<'_>, threads: Option<usize>) -> PyResult<String> {
-        let pool = pool(threads)?;
-        let outcome = watched(py, |watch| {
-            let run = within(pool.as_ref(), || self.model(None)).map(Run::new);
-            run.map(|run| {
+    fn _run(&self, py: Python<'_>, threads: Option<i64>) -> PyResult<String> {
+        let outcome = watched(py, &Threads::new(threads)?, |watch| {
+            self.model(None).map(Run::new).map(|run| {
                 let run = run.stop_when(watch.stop.clone());
-                within(pool.as_ref(), || run.finish(&mut []).map(|outcome| outcome.summary))
+                run.finish(&mut []).map(|outcome| outcome.summary)
             })
         })?;
         let summary = outcome.map_err(|e| scene_error(py, &e))?.map_err(|error| match &error {
@@ -184,6 +183,11 @@ impl Scene {
     /// Whether the scene has stages of construction.
     pub fn has_stages(&self) -> bool {
         !self.loaded.scene.stages.is_empty()
+    }
+
+    /// The scene with its simulation at the start, built on threads.
+    pub fn built(&self, py: Python<'_>, threads: &Threads) -> PyResult<Model> {
+        threads.run(py, || self.model(None))?.map_err(|e| scene_error(py, &e))
     }
 
     /// The scene with its simulation at the start.

@@ -27,7 +27,8 @@ use pyo3::types::PyDict;
 
 use crate::errors::{scene_error, stop_error};
 use crate::scene::Scene;
-use crate::watched::{pool, watched, within};
+use crate::threads::{SHARED, Threads};
+use crate::watched::watched;
 
 /// Adds the functions to the module.
 pub fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
@@ -106,7 +107,7 @@ fn _study(py: Python<'_>, file: PathBuf, out: PathBuf, options: &Bound<'_, PyDic
         out: Some(out.clone()),
     };
     let (jobs, threads) = (option(options, "jobs")?.unwrap_or(1), option(options, "threads")?.unwrap_or(1));
-    let done = watched(py, |watch| -> Result<String, StudyError> {
+    let done = watched(py, &SHARED, |watch| -> Result<String, StudyError> {
         let runner = InProcess { stop: watch.stop.clone() };
         if let Some(sweep) = Sweep::open(&file, &ask)? {
             let how = How { runner: &runner, stop: watch.stop.clone(), say: watch.tell, jobs, threads };
@@ -137,7 +138,7 @@ fn _certify(
         of: option(options, "of")?.unwrap_or_default(),
     };
     let (jobs, threads) = (option(options, "jobs")?.unwrap_or(1), option(options, "threads")?.unwrap_or(1));
-    let model = py.detach(|| scene.model(None)).map_err(|e| scene_error(py, &e))?;
+    let model = scene.built(py, &SHARED)?;
     // Runs read the scene again: the file that it came from, or one in the folder of results.
     let (own, text) = (PathBuf::from(&model.loaded.file), model.loaded.text.clone());
     let is_own = std::fs::read_to_string(&own).is_ok_and(|found| found == text);
@@ -146,7 +147,7 @@ fn _certify(
         let message = "the files that the scene names may not be found, since the scene was changed or made from a text: write scene.text to a file in their folder, and load that";
         return Err(value_error(message));
     }
-    let done = watched(py, |watch| -> Result<String, CertifyError> {
+    let done = watched(py, &SHARED, |watch| -> Result<String, CertifyError> {
         make_folder(&out)?;
         if !is_own {
             atomic::write(&file, text.as_bytes())?;
@@ -185,10 +186,9 @@ fn _safety(
         return Err(value_error(format!("error is {error}: a relative error lies between 0 and 1, as 1e-2")));
     }
     let plan = Plan { by, error, ..Plan::default() };
-    let pool = pool(option(options, "threads")?)?;
-    let found = watched(py, |watch| {
+    let found = watched(py, &Threads::new(option(options, "threads")?)?, |watch| {
         let watch = SafetyWatch { out: out.as_deref(), stop: &watch.stop, tell: watch.tell };
-        within(pool.as_ref(), || safety::find(&scene.loaded, (name, &scene.folder), &plan, &watch))
+        safety::find(&scene.loaded, (name, &scene.folder), &plan, &watch)
     })?;
     match found {
         Ok(found) => json(&found),
@@ -236,8 +236,8 @@ fn _joint(py: Python<'_>, scene: &Scene, test: &str, options: &Bound<'_, PyDict>
         let amplitude_m = option(options, "amplitude_m")?.unwrap_or(0.01);
         let path_m = joint::path(amplitude_m, option(options, "cycles")?.unwrap_or(0), steps);
         let test = ShearTest { stress_pa, hold, normal, path_m: path_m.map_err(value_error)? };
-        let sheared = py.detach(|| TestOutcome::shear(&scene.loaded.scene, (&which, &name), &test));
-        sheared.map_err(value_error)
+        let shear = || TestOutcome::shear(&scene.loaded.scene, (&which, &name), &test);
+        SHARED.run(py, shear)?.map_err(value_error)
     };
     json(&outcome?)
 }
@@ -255,7 +255,7 @@ fn _stereonet(py: Python<'_>, input: PathBuf, out: PathBuf, options: &Bound<'_, 
         lateral_deg: option(options, "lateral_deg")?.unwrap_or(SLIDING_LATERAL_DEG),
         out,
     };
-    match stereonet::make(&request) {
+    match SHARED.run(py, || stereonet::make(&request))? {
         Ok(made) => json(&made),
         Err(StereonetError::Scene(errors)) => Err(scene_error(py, &errors)),
         Err(other) => Err(value_error(other)),
@@ -288,7 +288,7 @@ fn _picture(py: Python<'_>, input: PathBuf, out: PathBuf, options: &Bound<'_, Py
         look,
         per_second: option(options, "fps")?.unwrap_or(12),
     };
-    match py.detach(|| view3d::draw(&request, &out)) {
+    match SHARED.run(py, || view3d::draw(&request, &out))? {
         Ok(written) => json(&written),
         Err(ViewError::Scene(errors)) => Err(scene_error(py, &errors)),
         Err(other) => Err(value_error(other)),
@@ -306,13 +306,13 @@ fn report_error(error: ReportError) -> PyErr {
 #[pyfunction]
 #[pyo3(signature = (folder, file, frames=None))]
 fn _report(py: Python<'_>, folder: PathBuf, file: PathBuf, frames: Option<u32>) -> PyResult<String> {
-    json(&py.detach(|| report::write(&folder, &file, frames)).map_err(report_error)?)
+    json(&SHARED.run(py, || report::write(&folder, &file, frames))?.map_err(report_error)?)
 }
 
 /// A page with the blocks of frames, each a time [s] and a file.
 #[pyfunction]
 fn _viewer(py: Python<'_>, title: &str, names: Vec<String>, frames: Vec<(f64, PathBuf)>) -> PyResult<String> {
-    py.detach(|| report::viewer(title, &names, &frames)).map_err(report_error)
+    SHARED.run(py, || report::viewer(title, &names, &frames))?.map_err(report_error)
 }
 
 /// Runs a scene to its end with its files in a folder; gives the text of `summary.json`.
@@ -324,16 +324,16 @@ fn _record(
     folder: PathBuf,
     name: &str,
     force: bool,
-    threads: Option<usize>,
+    threads: Option<i64>,
 ) -> PyResult<String> {
-    let pool = pool(threads)?;
-    let model = py.detach(|| within(pool.as_ref(), || scene.model(None))).map_err(|e| scene_error(py, &e))?;
+    let threads = Threads::new(threads)?;
+    let model = scene.built(py, &threads)?;
     let place = std::path::absolute(&scene.folder).unwrap_or_else(|_| scene.folder.clone());
     let file = place.join(Path::new(name).with_extension("ron"));
-    let summary = watched(py, |watch| {
+    let summary = watched(py, &threads, |watch| {
         let created = OutputFolder::create(&folder, force).map_err(ndda::RunError::Write)?;
         let run = Run::new(model).stop_when(watch.stop.clone()).record(created, file)?;
-        within(pool.as_ref(), || run.finish(&mut []).map(|outcome| outcome.summary))
+        run.finish(&mut []).map(|outcome| outcome.summary)
     })?;
     let summary = summary.map_err(|error: ndda::RunError| match &error {
         ndda::RunError::Settling(stop) => stop_error(py, stop),

@@ -9,9 +9,10 @@ use std::time::{Duration, Instant};
 use ndda::driver::Driver;
 use ndda::summary::Label;
 use ndda_solver::StepError;
-use pyo3::exceptions::PyRuntimeError;
+use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use rayon::{ThreadPool, ThreadPoolBuilder};
+
+use crate::threads::{Threads, within};
 
 /// How often Ctrl-C is looked for.
 const LOOK: Duration = Duration::from_millis(50);
@@ -27,8 +28,13 @@ pub struct Watch<'a> {
     pub tell: &'a (dyn Fn(&str) + Sync),
 }
 
-/// Does work in a thread of its own, until it is done or Ctrl-C raises the flag that it is given.
-pub fn watched<R: Send>(py: Python<'_>, work: impl FnOnce(&Watch) -> R + Send) -> PyResult<R> {
+/// Does work on threads, looked after by another one, until it is done or Ctrl-C raises the flag that it is given.
+pub fn watched<R: Send>(
+    py: Python<'_>,
+    threads: &Threads,
+    work: impl FnOnce(&Watch) -> R + Send,
+) -> PyResult<R> {
+    let pool = threads.pool(py)?;
     let stop = Arc::new(AtomicBool::new(false));
     let (tell, told) = mpsc::channel::<String>();
     let told = Mutex::new(told);
@@ -38,7 +44,7 @@ pub fn watched<R: Send>(py: Python<'_>, work: impl FnOnce(&Watch) -> R + Send) -
         let worker = scope.spawn(move || {
             // Nobody listens any more after a failure of `logging`.
             let say = move |line: &str| drop(tell.send(line.to_string()));
-            work(&Watch { stop: flag, tell: &say })
+            within(pool.as_deref(), move || work(&Watch { stop: flag, tell: &say }))
         });
         loop {
             let line = py.detach(|| match told.lock() {
@@ -70,27 +76,9 @@ fn log(py: Python<'_>, line: &str) -> PyResult<()> {
     logger.call_method1("info", ("%s", line)).map(drop)
 }
 
-/// A pool of so many threads, where a number is given.
-pub fn pool(threads: Option<usize>) -> PyResult<Option<ThreadPool>> {
-    if threads == Some(0) {
-        let message = "threads is 0: give at least 1, or None for all cores";
-        return Err(pyo3::exceptions::PyValueError::new_err(message));
-    }
-    let pool = threads.map(|count| ThreadPoolBuilder::new().num_threads(count).build()).transpose();
-    pool.map_err(|error| PyRuntimeError::new_err(error.to_string()))
-}
-
-/// Does work on the threads of a pool, or of the process.
-pub fn within<R: Send>(pool: Option<&ThreadPool>, work: impl FnOnce() -> R + Send) -> R {
-    match pool {
-        Some(pool) => pool.install(work),
-        None => work(),
-    }
-}
-
 /// The label of a simulation, for which its steps may be taken again.
-pub fn judged(py: Python<'_>, pool: Option<&ThreadPool>, driver: &mut Driver) -> PyResult<Label> {
-    watched(py, |watch| within(pool, || driver.label_watched(&watch.stop, watch.tell)))
+pub fn judged(py: Python<'_>, threads: &Threads, driver: &mut Driver) -> PyResult<Label> {
+    watched(py, threads, |watch| driver.label_watched(&watch.stop, watch.tell))
 }
 
 /// Steps until `left` is zero or the slice of time is over.
@@ -104,4 +92,13 @@ pub fn slice(driver: &mut Driver, left: &mut u64) -> Result<(), StepError> {
         }
     }
     Ok(())
+}
+
+/// A number of steps that a caller gives.
+pub fn number_of_steps(n: &Bound<'_, PyAny>) -> PyResult<u64> {
+    n.extract().map_err(|_| match n.call_method0("__index__").and_then(|n| n.lt(0)) {
+        Ok(true) => PyValueError::new_err(format!("n is {n}: give at least 0")),
+        Ok(false) => PyValueError::new_err(format!("n is {n}: give fewer steps")),
+        Err(_) => PyTypeError::new_err(format!("n is {n:?}: give a whole number")),
+    })
 }

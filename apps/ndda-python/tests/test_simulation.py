@@ -238,5 +238,5 @@ def test_times_in_the_past_and_bad_counts_are_refused(fall: ndda.Simulation) -> 
         fall.run(until=0.4)
     with pytest.raises(ValueError, match="every is 0: give at least 1"):
         fall.run(every=0, callback=print)
-    with pytest.raises(ValueError, match="at least 1"):
+    with pytest.raises(ValueError, match="threads is 0: give 1 to 1024"):
         bounce(threads=0)
