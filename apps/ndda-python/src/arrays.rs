@@ -1,19 +1,45 @@
 //! Copies of the state as arrays.
 
 use ndda_solver::{Sample, Simulation};
-use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadwriteArray2};
+use numpy::{Element, PyArray1, PyArray2, PyArrayMethods, PyReadwriteArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 /// A read-only array of rows.
-pub fn rows<'py, const N: usize>(
+pub fn rows<'py, T: Element, const N: usize>(
     py: Python<'py>,
-    rows: Vec<[f64; N]>,
-) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    rows: Vec<[T; N]>,
+) -> PyResult<Bound<'py, PyArray2<T>>> {
     let count = rows.len();
     let array = PyArray1::from_vec(py, rows.into_flattened()).reshape([count, N])?;
     array.call_method1("setflags", (false,))?;
     Ok(array)
+}
+
+/// Mass centre of each block \[m\].
+pub fn centers(simulation: &Simulation) -> Vec<[f64; 3]> {
+    let (blocks, position) = (simulation.blocks(), &simulation.state().position);
+    let center = |block| {
+        let own = &position[blocks.nodes_of(block)];
+        (simulation.shape(block).operator.center(own) + blocks.origin_m).into()
+    };
+    blocks.ids().map(center).collect()
+}
+
+/// Mass of each block \[kg\].
+pub fn masses_kg(simulation: &Simulation) -> Vec<f64> {
+    simulation.blocks().ids().map(|block| simulation.shape(block).operator.mass_kg).collect()
+}
+
+/// First tetrahedron of each block, and the number of tetrahedra at the end.
+pub fn tet_starts(simulation: &Simulation) -> Vec<usize> {
+    let blocks = simulation.blocks();
+    blocks.ids().map(|block| blocks.tets_of(block).start).chain([blocks.tets.len()]).collect()
+}
+
+/// Nodes of each tetrahedron.
+pub fn tetrahedra(simulation: &Simulation) -> Vec<[i64; 4]> {
+    simulation.blocks().tets.iter().map(|tet| tet.map(|node| i64::from(node.0))).collect()
 }
 
 /// A quantity of the nodes in global coordinates, passed to `take` row by row.

@@ -182,24 +182,32 @@ impl Simulation {
         Ok(self.driver()?.simulation().blocks().node_starts().to_vec())
     }
 
+    /// First tetrahedron of each block, and the number of tetrahedra at the end.
+    fn _tet_starts(&self) -> PyResult<Vec<usize>> {
+        Ok(arrays::tet_starts(self.driver()?.simulation()))
+    }
+
+    /// Nodes of each tetrahedron, rows of the arrays of nodes, shape (tetrahedra, 4), a read-only copy.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import ndda
+    /// >>> simulation = ndda.Simulation(ndda.parse(ndda.EXAMPLE))
+    /// >>> simulation.tetrahedra.shape
+    /// (6, 4)
+    #[getter]
+    fn tetrahedra<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i64>>> {
+        arrays::rows(py, arrays::tetrahedra(self.driver()?.simulation()))
+    }
+
     /// Mass centre of each block [m].
     fn _centers<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let driver = self.usable(py)?;
-        let simulation = driver.simulation();
-        let (blocks, position) = (simulation.blocks(), &simulation.state().position);
-        let center = |block| {
-            let own = &position[blocks.nodes_of(block)];
-            (simulation.shape(block).operator.center(own) + blocks.origin_m).into()
-        };
-        arrays::rows(py, blocks.ids().map(center).collect())
+        arrays::rows(py, arrays::centers(self.usable(py)?.simulation()))
     }
 
     /// Mass of each block [kg].
     fn _masses<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let driver = self.driver()?;
-        let simulation = driver.simulation();
-        let masses = simulation.blocks().ids().map(|block| simulation.shape(block).operator.mass_kg);
-        Ok(PyArray1::from_vec(py, masses.collect()))
+        Ok(PyArray1::from_vec(py, arrays::masses_kg(self.driver()?.simulation())))
     }
 
     /// A quantity of the nodes, in a new read-only array, or in `out`.

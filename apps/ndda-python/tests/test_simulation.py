@@ -240,3 +240,21 @@ def test_times_in_the_past_and_bad_counts_are_refused(fall: ndda.Simulation) -> 
         fall.run(every=0, callback=print)
     with pytest.raises(ValueError, match="threads is 0: give 1 to 1024"):
         bounce(threads=0)
+
+
+def test_a_block_has_its_own_rows_of_stress_whose_volumes_are_its_mass() -> None:
+    text = ndda.EXAMPLE.replace("body: Rigid, ", "").replace("cells: (1, 1, 1)", "cells: (2, 2, 2)")
+    scene = ndda.parse(text).to_builder()
+    second = ndda.builders.Block.from_dict(json.loads(ndda.parse(text)._json())["blocks"][0])
+    second.name, second.at_m = "other", (5.0, 0.0, 0.0)
+    second.initial_stress_pa = ndda.builders.Stress(zz=-1e6)
+    scene.blocks.append(second)
+    simulation = ndda.Simulation(scene)
+    other = simulation.blocks["other"]
+    assert np.array_equal(other.stress, simulation.stress[other.elements])
+    corners = simulation.position[other.tetrahedra]
+    volumes = np.linalg.det(corners[:, 1:] - corners[:, :1]) / 6.0
+    assert (volumes > 0.0).all() and volumes.sum() == pytest.approx(1.0, rel=1e-12)
+    assert set(other.tetrahedra.ravel()) == set(other.nodes)
+    np.testing.assert_allclose(other.stress[:, 2], -1e6, rtol=1e-9)
+    np.testing.assert_allclose(simulation.blocks["block"].stress, 0.0, atol=1e-6)

@@ -135,6 +135,48 @@ class BlockSelection:
         return self._simulation.velocity[self.nodes]
 
     @property
+    def elements(self) -> npt.NDArray[np.int64]:
+        """Rows of their tetrahedra in `Simulation.stress` and `Simulation.tetrahedra`.
+
+        Examples
+        --------
+        >>> import ndda
+        >>> simulation = ndda.Simulation(ndda.parse(ndda.EXAMPLE))
+        >>> simulation.blocks["b*"].elements.tolist()
+        [0, 1, 2, 3, 4, 5]
+        """
+        import numpy as np
+
+        starts = self._simulation._tet_starts()
+        return np.concatenate([np.arange(starts[i], starts[i + 1], dtype=np.int64) for i in self._indices])
+
+    @property
+    def tetrahedra(self) -> npt.NDArray[np.int64]:
+        """Nodes of their tetrahedra, rows of the arrays of all nodes, shape (elements, 4).
+
+        Examples
+        --------
+        >>> import ndda
+        >>> simulation = ndda.Simulation(ndda.parse(ndda.EXAMPLE))
+        >>> simulation.position[simulation.blocks["b*"].tetrahedra].shape
+        (6, 4, 3)
+        """
+        return self._simulation.tetrahedra[self.elements]
+
+    @property
+    def stress(self) -> npt.NDArray[np.float64]:
+        """Cauchy stress xx, yy, zz, xy, yz, zx of their tetrahedra [Pa], shape (elements, 6).
+
+        Examples
+        --------
+        >>> import ndda
+        >>> simulation = ndda.Simulation(ndda.parse(ndda.EXAMPLE))
+        >>> simulation.blocks["b*"].stress.shape
+        (6, 6)
+        """
+        return self._simulation.stress[self.elements]
+
+    @property
     def center(self) -> npt.NDArray[np.float64]:
         """Mass centre of each [m], shape (blocks, 3).
 
