@@ -164,7 +164,9 @@ impl Simulation {
             self.state.clone_from(&control.state);
             control.ledger.note_rejected();
             self.audit.ledger.clone_from(&control.ledger);
-            if halvings >= control.settings.most_halvings && energy_check_cooldown == 0 {
+            // Only an error of energy is let pass; after any other rejection the same parts would be rejected again.
+            let is_let_pass = matches!(rejection, Rejection::Energy(_)) && energy_check_cooldown > 0;
+            if halvings >= control.settings.most_halvings && !is_let_pass {
                 return Err(match rejection {
                     Rejection::Failed(error) => error,
                     Rejection::TooLong(_) | Rejection::Energy(_) => {
@@ -173,7 +175,7 @@ impl Simulation {
                 });
             }
             let more = match rejection {
-                Rejection::Energy(_) if energy_check_cooldown > 0 => 0,
+                Rejection::Energy(_) if is_let_pass => 0,
                 // As many halvings as h requires, at once.
                 Rejection::TooLong(times) if times.is_finite() => (times.log2().ceil() as u32).max(1),
                 _ => 1,
@@ -340,6 +342,21 @@ impl Simulation {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bodies::kind::BodyKind;
+    use crate::step::test_boxes::boxes;
+    use ndda_mesh::Vec3;
+
+    #[test]
+    fn a_step_that_is_too_long_is_given_up_while_errors_of_energy_are_let_pass() {
+        let mut setup = boxes(&[(BodyKind::Rigid, [1.0; 3], [0.0; 3])]);
+        setup.auto_step = Some(AutoStep { safety: 0.5, energy: 1e-4, most_halvings: 1 });
+        // 0.6 m in a step of 1 ms, and a width of 1 m.
+        setup.bodies[0].velocity_m_s = Vec3::new(600.0, 0.0, 0.0);
+        let mut simulation = Simulation::new(setup).unwrap();
+        simulation.state.control.energy_check_cooldown = COOLDOWN_STEPS;
+        let given_up = simulation.step();
+        assert!(matches!(given_up, Err(StepError::NoStepIsShortEnough { .. })), "{given_up:?}");
+    }
 
     #[test]
     fn a_step_is_expected_to_gain_what_the_bound_says_until_steps_like_it_have_gained_less() {

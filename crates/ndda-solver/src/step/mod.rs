@@ -40,6 +40,8 @@ pub(crate) mod stage;
 pub(crate) mod stage_state;
 pub(crate) mod start_snapshot;
 pub(crate) mod state;
+#[cfg(test)]
+pub(crate) mod test_boxes;
 pub(crate) mod travel;
 
 use crate::step::account::StageWatch;
