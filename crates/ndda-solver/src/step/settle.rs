@@ -16,7 +16,6 @@ use ndda_mesh::geometry::Aabb;
 use ndda_mesh::{BlockId, Vec3};
 use serde::{Deserialize, Serialize};
 
-use crate::bodies::kind::BodyKind;
 use crate::error::StepError;
 use crate::step::Simulation;
 use crate::step::mass_scaling::ScaledMasses;
@@ -262,11 +261,7 @@ impl Simulation {
         let damping = self.damping_of(settle);
         let masses = if settle.mass_scaling { self.masses_in_stages(damping) } else { None };
         self.scale_masses(masses)?;
-        let moves = |block: &BlockId| self.shape(*block).kind != BodyKind::Fixed;
-        let moving_j = self.blocks().ids().filter(moves).map(|block| self.load_energy_j(block)).sum();
-        let mut progress = Progress::new(self, damping);
-        progress.moving_j = moving_j;
-        let mut settling = Settling::new(self, progress, Vec::new());
+        let mut settling = Settling::new(self, Progress::within_a_run(self, damping), Vec::new());
         settling.bonds_hold = false;
         let ramp = Ramp { start_s: self.time_s(), step_s: self.step_s(), steps: ramp_steps };
         let last = self.come_to_rest((settle, &mut settling), &ramp, watch);

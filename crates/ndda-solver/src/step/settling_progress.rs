@@ -1,7 +1,8 @@
 //! How a scene comes to rest, step by step: what damps it, and what is left of its motion.
 
-use ndda_mesh::Vec3;
 use ndda_mesh::geometry::Aabb;
+use ndda_mesh::{BlockId, Vec3};
+use ndda_ranks::ExactSum;
 use serde::{Deserialize, Serialize};
 
 use crate::bodies::kind::BodyKind;
@@ -31,11 +32,11 @@ pub enum Damping {
 pub(super) struct Progress {
     damper: Damper,
     pub(super) oscillation: Oscillation,
-    /// Part of `load_j` of the blocks that can move, in the course of a run; zero before it begins [J]. A scene in equilibrium hardly moves,
-    /// so its speed is compared with the one that loads alone would bring in a quarter of the slowest oscillation: about the largest speed
-    /// of the same scene released without stress, whatever the step.
-    pub(super) moving_j: f64,
-    /// Kinetic energy that loads alone would give free blocks in a step [J].
+    /// `load_j` in the course of a run; zero before it begins [J]. A scene in equilibrium hardly moves, so its speed is compared with the one
+    /// that loads alone would bring in a quarter of the slowest oscillation: about the largest speed of the same scene released without
+    /// stress, whatever the step.
+    moving_j: f64,
+    /// Kinetic energy that loads alone would give all blocks but the fixed ones in a step [J].
     load_j: f64,
     /// Largest kinetic energy on the way [J].
     highest_j: f64,
@@ -55,8 +56,16 @@ impl Progress {
             Damping::Adaptive => Damper::Adaptive(AdaptiveDamping::default()),
             Damping::Local { factor } => Damper::Local(LocalDamping::new(factor)),
         };
-        let load_j = simulation.blocks().ids().map(|block| simulation.load_energy_j(block)).sum();
+        let moves = |block: &BlockId| simulation.shape(*block).kind != BodyKind::Fixed;
+        let loads_j = simulation.blocks().ids().filter(moves).map(|block| simulation.load_energy_j(block));
+        let load_j = loads_j.collect::<ExactSum>().value();
         Self { damper, oscillation: Oscillation::default(), moving_j: 0.0, load_j, highest_j: load_j }
+    }
+
+    /// The same in the course of a run.
+    pub(super) fn within_a_run(simulation: &Simulation, damping: Damping) -> Self {
+        let progress = Self::new(simulation, damping);
+        Self { moving_j: progress.load_j, ..progress }
     }
 
     /// A step; gives its report, and the speed that is left over the largest.
@@ -119,6 +128,25 @@ fn ratio(energy_j: f64, largest_j: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bodies::prototype::ForceSetup;
+    use crate::step::settle::Settle;
+    use crate::step::test_boxes::boxes;
+
+    /// Steps that a cube takes to rest on a fixed base that bears this load [N], from where contact does not carry it yet.
+    fn steps_to_rest(load_n: f64) -> u64 {
+        let base = (BodyKind::Fixed, [3.0, 3.0, 1.0], [-1.5, -1.5, -1.0]);
+        let cube = (BodyKind::Rigid, [1.0; 3], [-0.5, -0.5, 0.0]);
+        let mut setup = boxes(&[base, cube]);
+        setup.bodies[0].forces.push(ForceSetup { node: 0, force_n: -load_n * Vec3::z(), factor: None });
+        Simulation::new(setup).unwrap().settle(&Settle::new(1e-4, 100_000)).unwrap().steps
+    }
+
+    #[test]
+    fn what_weighs_on_a_fixed_base_does_not_make_a_scene_rest_earlier() {
+        let steps = steps_to_rest(0.0);
+        assert!(steps > 10, "{steps} steps");
+        assert_eq!(steps_to_rest(1e12), steps);
+    }
 
     #[test]
     fn what_is_left_of_an_oscillation_over_its_scale_does_not_depend_on_the_step() {
