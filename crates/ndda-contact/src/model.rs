@@ -183,7 +183,8 @@ pub struct ContactReport {
     pub friction_left_m_s: f64,
     /// By how much damping of contact that the step leaves out lets blocks go too fast, at most [m/s].
     pub dashpot_error_m_s: f64,
-    /// By how much the strength of a bond was exceeded that broke in this evaluation, over its strength without normal stress.
+    /// By how much the strength of a bond was exceeded that broke in this evaluation, over its strength under its normal stress or without
+    /// any, whichever is more.
     pub bond_overload: f64,
     /// Bonds that would have broken or slipped in this evaluation, were they not to hold.
     pub overloaded_bonds: usize,

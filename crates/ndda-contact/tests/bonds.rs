@@ -24,6 +24,8 @@ struct Plates {
     friction: Vec<Vec3>,
     /// Work of bonds and friction so far [J], by the trapezoidal rule.
     work_j: f64,
+    /// Overload of the bonds that broke in the last evaluation.
+    overload: f64,
 }
 
 impl Plates {
@@ -40,8 +42,8 @@ impl Plates {
             .with_friction(law);
         let (last, friction) =
             (blocks.rest_position.clone(), vec![Vec3::zeros(); blocks.rest_position.len()]);
-        let mut plates =
-            Self { blocks, model, history: ContactHistory::default(), last, friction, work_j: 0.0 };
+        let history = ContactHistory::default();
+        let mut plates = Self { blocks, model, history, last, friction, work_j: 0.0, overload: 0.0 };
         plates.shifted(Vec3::zeros());
         plates
     }
@@ -67,6 +69,7 @@ impl Plates {
         let on_upper = |forces: &[Vec3]| forces[self.upper()].iter().sum();
         let found = (on_upper(&answer.force), on_upper(&answer.friction_force));
         (self.last, self.friction) = (position, answer.friction_force);
+        self.overload = answer.report.bond_overload;
         found
     }
 
@@ -124,6 +127,24 @@ fn shear_strength_is_that_of_mohr_and_coulomb_with_a_tension_cut_off() {
             }
         }
     }
+}
+
+#[test]
+fn the_overload_of_a_joint_of_friction_alone_is_a_part_of_its_strength() {
+    for sigma_pa in [1e6, 1e3] {
+        let law = SofteningCoulomb::new(SHEAR_PA_M, (45.0, 0.0), (30.0, 0.0), 1e-3);
+        let mut plates = Plates::of(Box::new(law));
+        let pressed = Plates::opening_m(sigma_pa) * Vec3::z();
+        plates.shifted(pressed);
+        assert_eq!(plates.overload, 0.0);
+        plates.shifted(pressed + 1.02 * sigma_pa / SHEAR_PA_M * across());
+        assert!((plates.overload - 0.02).abs() < 1e-2, "{} at {sigma_pa} Pa", plates.overload);
+        assert!(plates.history.bonds.is_empty());
+    }
+    // Pulled open, it has no strength that could be exceeded.
+    let mut plates = Plates::of(Box::new(SofteningCoulomb::new(SHEAR_PA_M, (45.0, 0.0), (30.0, 0.0), 1e-3)));
+    plates.shifted(1e-6 * Vec3::z());
+    assert!(plates.overload == 0.0 && plates.history.bonds.is_empty());
 }
 
 #[test]

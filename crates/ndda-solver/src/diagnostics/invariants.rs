@@ -37,7 +37,8 @@ pub struct Invariants {
     pub drawn_overlap_m_s: Worst,
     /// penetration over tet height.
     pub max_penetration_ratio: f64,
-    /// by how much the strength of a bond was exceeded where one broke, over its strength without normal stress.
+    /// by how much the strength of a bond was exceeded where one broke, over its strength under its normal stress or without any, whichever is
+    /// more.
     pub bond_overload: f64,
     /// largest unresolved lateral velocity of a clamped block, due to the uncertain direction of contact forces, over the largest speed.
     pub lateral_drift_speed: Worst,

@@ -5,7 +5,7 @@ use crate::friction::law::{FacetSlip, FrictionLaw};
 use crate::friction::stretch::{Stretch, frame_of};
 use crate::model::{Bond, ContactInput};
 
-/// Overload of a bond that breaks, over its strength without normal stress; none where it holds. A bond whose law lets it slip does so first.
+/// Overload of a bond that breaks, over its strength; none where it holds. A bond whose law lets it slip does so first.
 pub(super) fn overload(
     bond: &mut Bond,
     law: Option<&dyn FrictionLaw>,
@@ -23,8 +23,7 @@ pub(super) fn overload(
         None => Some(law.tension_pa()),
     };
     let Some(tension_pa) = tension_pa else { return Some(0.0) };
-    let overload = stretch.overload(law, (pressed_n, tension_pa, bond.slip_m), scratch);
-    (overload > 0.0).then_some(overload)
+    stretch.overload(law, (pressed_n, tension_pa, bond.slip_m), scratch)
 }
 
 /// Damages a bond by how far it is stretched. Gives its overload where it breaks at once.

@@ -97,14 +97,14 @@ impl Stretch {
         ShearMemory { broken: false, state, ..ShearMemory::default() }
     }
 
-    /// By how much the joint's strength is exceeded, over its strength without normal stress; not above zero while it holds:
-    /// k_b δ ≤ σ_t and |k_s s| ≤ max(0, c + σ tan φ), to rounding.
+    /// By how much the joint's strength is exceeded, over its strength under the present normal stress or without any, whichever is more, and
+    /// 0 of a joint that has neither; none while it holds: k_b δ ≤ σ_t and |k_s s| ≤ max(0, c + σ tan φ), to rounding.
     pub(crate) fn overload(
         &self,
         law: &dyn FrictionLaw,
         (pressed_n, tension_pa, slip_m): (f64, f64, f64),
         state: &mut Vec<f64>,
-    ) -> f64 {
+    ) -> Option<f64> {
         let whole = self.memory((law, slip_m), state);
         let capacity_n = |normal_n: f64| {
             let slip = FacetSlip { normal_n, area_m2: 2.0 * self.half_area, ..FacetSlip::default() };
@@ -112,11 +112,11 @@ impl Stretch {
         };
         let tensile_pa = law.bond_stiffness_pa_m() * (self.opening_m - self.rounding_m);
         let rounding_n = law.shear_stiffness_pa_m() * self.half_area * self.rounding_m;
-        let strength_n = capacity_n(pressed_n - self.tension_n(law)) + rounding_n;
+        let present_n = capacity_n(pressed_n - self.tension_n(law));
         let tensile_n = (tensile_pa - tension_pa) * self.half_area;
-        let excess_n = tensile_n.max(self.shear_n(law).norm() - strength_n);
-        let unstressed_n = capacity_n(0.0).max(tension_pa * self.half_area);
-        if unstressed_n > 0.0 { excess_n / unstressed_n } else { excess_n }
+        let excess_n = tensile_n.max(self.shear_n(law).norm() - present_n - rounding_n);
+        let strength_n = present_n.max(capacity_n(0.0)).max(tension_pa * self.half_area);
+        (excess_n > 0.0).then(|| if strength_n > 0.0 { excess_n / strength_n } else { 0.0 })
     }
 }
 
