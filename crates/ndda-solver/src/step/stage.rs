@@ -57,6 +57,10 @@ impl Simulation {
         let State { position, velocity, .. } = &self.state;
         self.loads.leave_out(&ranges, Places { position, velocity, lead_s: 0.0 });
         self.stage = Some(Box::new(StageState { absent, ..StageState::default() }));
+        let present = self.blocks().ids().filter(|block| !self.is_absent(*block));
+        let heights_m = present.map(|block| self.shape(block).smallest_height_m);
+        let smallest_height_m = heights_m.fold(f64::INFINITY, f64::min);
+        self.audit.travel.begin_anew(smallest_height_m);
         Ok(())
     }
 
