@@ -137,7 +137,9 @@ impl Loads {
     /// Takes all loads off some runs of nodes.
     pub(crate) fn leave_out(&mut self, nodes: &[Range<usize>], places: Places) {
         let is_there = |n: u32| !nodes.iter().any(|range| range.contains(&(n as usize)));
-        nodes.iter().for_each(|range| self.constant[range.clone()].fill(Vec3::zeros()));
+        for forces in [&mut self.constant, &mut self.given].into_iter().filter(|forces| !forces.is_empty()) {
+            nodes.iter().for_each(|range| forces[range.clone()].fill(Vec3::zeros()));
+        }
         self.varying.iter_mut().for_each(|load| load.forces.retain(|(node, _)| is_there(*node)));
         self.pressures.retain(|pressure| pressure.first_node().is_none_or(is_there));
         (self.force, self.size_n) = sum_and_size(&self.constant, &self.starts);
@@ -271,6 +273,20 @@ impl Simulation {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn loads_that_are_taken_off_stay_off_when_reactions_of_quiet_faces_are_kept() {
+        let nowhere = Places { position: &[], velocity: &[], lead_s: 0.0 };
+        let one = Vec3::new(1.0, 2.0, 3.0);
+        let mut loads = Loads::new(vec![one; 2], Vec::new(), Vec::new(), (vec![0, 1, 2], nowhere));
+        loads.keep(&[Vec3::zeros(); 2]);
+        loads.leave_out(&[1..2], nowhere);
+        assert_eq!(loads.total(), [one, Vec3::zeros()]);
+        loads.keep(&[-one, Vec3::zeros()]);
+        assert_eq!(loads.total(), [Vec3::zeros(); 2]);
+        assert_eq!(loads.force(), Vec3::zeros());
+        assert_eq!(loads.at(0.0, nowhere), [one, Vec3::zeros()]);
+    }
 
     #[test]
     fn a_table_counts_where_it_is_extreme_for_long_enough_and_at_its_end() {

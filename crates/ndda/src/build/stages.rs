@@ -68,7 +68,43 @@ pub(crate) fn steps_of_stage(stage: &Stage, step_s: f64) -> u64 {
 
 #[cfg(test)]
 mod tests {
+    use std::path::Path;
+
+    use ndda_mesh::{BlockId, Vec3};
+    use ndda_solver::StageStart;
+
+    use super::*;
     use crate::Model;
+
+    #[test]
+    fn nothing_pulls_at_blocks_that_are_taken_out_of_a_scene_with_quiet_faces() {
+        let block = |name: &str, body: &str, at_m: u32| {
+            format!(
+                "(name: \"{name}\", material: \"rock\", body: {body}, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), at_m: ({at_m}, 0, 0)),"
+            )
+        };
+        let text = format!(
+            "(title: \"Quiet\", time: (step_s: 1e-4, end_s: 1e-3), gravity_m_s2: (0, 0, -10),
+              materials: [(name: \"rock\", density_kg_m3: 2600, young_pa: 20e9, poisson: 0.25)],
+              blocks: [{}{}{}],
+              quiet: [(block: \"base\", on: Set(\"z_min\")), (block: \"other\", on: Set(\"z_min\"))],
+              contact: Potential(penalty_pa: 1e9),
+              stages: [(name: \"out\", remove: [\"other\", \"wall\"], then: Run(1e-3))])",
+            block("base", "Elastic", 0),
+            block("other", "Elastic", 5),
+            block("wall", "Fixed", 9),
+        );
+        let Model { loaded, mut simulation, .. } = Model::from_text(&text).unwrap();
+        simulation.step().unwrap();
+        let (blocks, folder) = (simulation.blocks().clone(), Path::new("."));
+        let next = simulation_in_stage(&loaded.scene, blocks, folder, Choices::default(), 1);
+        let mut next = next.unwrap_or_else(|faults| panic!("{faults:?}"));
+        next.begin_stage(&mut simulation, &StageStart::default()).unwrap();
+        next.step().unwrap();
+        for block in [1, 2] {
+            assert_eq!(next.reaction_n(BlockId(block)), Vec3::zeros(), "block {block}");
+        }
+    }
 
     #[test]
     fn a_bolt_in_a_block_that_is_taken_out_is_refused() {
