@@ -39,8 +39,8 @@ pub enum By {
     },
 }
 
-/// A scene at rest under its constant loads: nothing moves at the start, gravity is there at once, loads have the last of their values over time, and no damping in
-/// proportion to mass holds back what would accelerate.
+/// A scene at rest under its constant loads: nothing moves at the start, gravity is there at once, loads have the last of their values over time, there are no blasts
+/// and no waves, and no damping in proportion to mass holds back what would accelerate.
 pub fn at_rest(scene: &Scene) -> Scene {
     let mut scene = scene.clone();
     for rows in factors(&mut scene) {
@@ -49,6 +49,8 @@ pub fn at_rest(scene: &Scene) -> Scene {
     scene.materials.iter_mut().for_each(|material| material.damping.mass_per_s = 0.0);
     scene.gravity_ramp_s = 0.0;
     scene.reference = None;
+    scene.blasts.clear();
+    scene.quiet.iter_mut().for_each(|quiet| quiet.incident.clear());
     for block in &mut scene.blocks {
         (block.velocity_m_s, block.spin_rad_s) = ([0.0; 3], [0.0; 3]);
     }
@@ -68,6 +70,12 @@ pub fn taken_otherwise(scene: &Scene) -> Vec<String> {
     let mut words = Vec::new();
     if factors(&mut scene.clone()).any(varies) {
         words.push("loads with a `factor` over time act with the last of its values".into());
+    }
+    if !scene.blasts.is_empty() {
+        words.push("`blasts` are left out: trials are of a scene at rest under loads that last".into());
+    }
+    if scene.quiet.iter().any(|quiet| !quiet.incident.is_empty()) {
+        words.push("`incident` waves of quiet faces are left out: trials are of a scene at rest".into());
     }
     if scene.materials.iter().any(|material| material.damping.mass_per_s > 0.0) {
         words.push("`mass_per_s` of materials is left out: it would hold back what accelerates".into());
@@ -266,5 +274,27 @@ fn across(scene: &Scene, towards: &[f64; 3]) -> Vec3 {
         Vec3::zeros()
     } else {
         towards - gravity * (gravity.dot(&towards) / gravity.norm_squared())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blasts_and_waves_are_taken_out_of_a_scene_at_rest_and_told() {
+        let text = r#"(
+            title: "Shaken and blown up", time: (step_s: 1e-4, end_s: 1e-3),
+            materials: [(name: "rock", density_kg_m3: 2600, young_pa: 20e9, poisson: 0.25)],
+            blocks: [(name: "cube", material: "rock", shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)))],
+            quiet: [(block: "cube", on: Set("z_min"), incident: [(wave: P, record: (file: "quake.csv"))])],
+            blasts: [(block: "cube", on: Part(Set("x_min")), pressure: Rows([(0, 0), (0.05, 3e4), (0.1, 1e4)]))],
+        )"#;
+        let scene = ndda_io::read::load_text("t.ron", text, &[], None).unwrap().scene;
+        let told = taken_otherwise(&scene);
+        assert!(told[0].contains("`blasts`") && told[1].contains("`incident` waves"), "{told:?}");
+        let rest = at_rest(&scene);
+        assert!(rest.blasts.is_empty() && rest.quiet.len() == 1 && rest.quiet[0].incident.is_empty());
+        assert!(taken_otherwise(&rest).is_empty());
     }
 }
