@@ -60,7 +60,7 @@ const EVEN: f64 = 1e-4;
 const KEPT: f64 = 0.95;
 
 /// Most rows of a record that is brought to an even spacing.
-const MOST_ROWS: usize = 10_000_000;
+pub const MOST_ROWS: usize = 10_000_000;
 
 /// Speed of light [m/s]: no ground moves faster, and far above it squares of speeds are no numbers any more.
 const LIGHT_M_S: f64 = 299_792_458.0;

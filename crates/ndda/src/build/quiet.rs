@@ -172,7 +172,7 @@ fn arriving(
     let prepared = wave.record.prepared(folder).map_err(|error| error.to_string())?;
     let (rows, share) = match (wave.motion, ground) {
         (RecordedAs::Outcrop, _) => (prepared.rows, 0.5),
-        (RecordedAs::Within, Some(height)) => (without_echo(&prepared.rows, 2.0 * height / c), 1.0),
+        (RecordedAs::Within, Some(height)) => (without_echo(&prepared.rows, 2.0 * height / c)?, 1.0),
         (RecordedAs::Within, None) => return Err("a record from within rock needs ground_m".into()),
         (RecordedAs::Upgoing, _) => (prepared.rows, 1.0),
     };
@@ -185,16 +185,31 @@ fn arriving(
     Ok(waves)
 }
 
+/// Refuses a spacing of rows [s] of which a record of some length [s] would have too many.
+fn refuse_too_many(length_s: f64, spacing_s: f64) -> Result<(), String> {
+    let count = length_s / spacing_s;
+    if count <= record::MOST_ROWS as f64 {
+        return Ok(());
+    }
+    Err(format!(
+        "would take a record of {count:.0} rows, {spacing_s:.3e} s apart, limit {}: give it a longer spacing by resample_s",
+        record::MOST_ROWS
+    ))
+}
+
 /// The wave in a motion that is it and its echo after a time: a(t) = w(t) − a(t − T), on rows of which a whole number makes T.
-fn without_echo(rows: &[(f64, f64)], echo_s: f64) -> Vec<(f64, f64)> {
+fn without_echo(rows: &[(f64, f64)], echo_s: f64) -> Result<Vec<(f64, f64)>, String> {
     let shortest_s = rows.windows(2).map(|pair| pair[1].0 - pair[0].0).fold(f64::INFINITY, f64::min);
     let parts = (echo_s / shortest_s).ceil().max(1.0);
     let spacing_s = echo_s / parts;
+    refuse_too_many(rows[rows.len() - 1].0 - rows[0].0, spacing_s).map_err(|message| {
+        format!("taking out its echo {echo_s:.3e} s later {message}, or put ground_m farther ahead")
+    })?;
     let mut even = record::resampled(rows, spacing_s);
     for i in parts as usize..even.len() {
         even[i].1 -= even[i - parts as usize].1;
     }
-    even
+    Ok(even)
 }
 
 /// What each record of a scene is, and what is done with it, in words.
@@ -224,9 +239,19 @@ mod tests {
         let wave = |t: f64| if (0.0..1.0).contains(&t) { (std::f64::consts::TAU * t).sin() } else { 0.0 };
         let rows: Vec<_> =
             (0..=4000).map(|i| f64::from(i) * 1e-3).map(|t| (t, wave(t) + wave(t - 0.37))).collect();
-        for (t, a) in without_echo(&rows, 0.37) {
+        for (t, a) in without_echo(&rows, 0.37).unwrap() {
             assert!((a - wave(t)).abs() < 1e-4, "{t}: {a} {}", wave(t));
         }
+    }
+
+    #[test]
+    fn a_record_of_which_an_echo_would_make_too_many_rows_is_refused() {
+        // Two rows a nanosecond apart in a minute.
+        let message = without_echo(&[(0.0, 0.0), (1e-9, 1.0), (60.0, 0.0)], 0.37).unwrap_err();
+        assert!(message.contains("limit 10000000") && message.contains("resample_s"), "{message}");
+        // Ground a tenth of a micrometre ahead.
+        let message = without_echo(&[(0.0, 0.0), (0.01, 1.0), (60.0, 0.0)], 1e-10).unwrap_err();
+        assert!(message.contains("ground_m"), "{message}");
     }
 
     /// A column of a cube, Elastic or Fixed, and what else a scene has.

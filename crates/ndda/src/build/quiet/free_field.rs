@@ -129,7 +129,7 @@ impl Ground<'_> {
             bottom_m = stratum.top_m;
             pair
         };
-        Ok(waves(&layers, &rows, end_s(self.scene)).into_iter().zip(strata).map(in_layer).collect())
+        Ok(waves(&layers, &rows, end_s(self.scene))?.into_iter().zip(strata).map(in_layer).collect())
     }
 }
 

@@ -3,6 +3,8 @@
 
 use ndda_io::record;
 
+use super::refuse_too_many;
+
 /// Fewest steps in which a wave goes through a layer.
 const FEWEST_STEPS: u32 = 20;
 /// Steps of the march in a spacing of the record, at least: a peak of one row loses a sixteenth at most.
@@ -32,11 +34,17 @@ pub(super) struct Waves {
 ///
 /// At a border, a velocity that arrives from a layer of impedance z goes on with 2z/(z + z′) and comes back with (z − z′)/(z + z′); the ground sends all of it back.
 /// Times in which waves go through layers are whole numbers of steps, as near as steps of some length allow.
-pub(super) fn waves(layers: &[Layer], rows: &[(f64, f64)], until_s: f64) -> Vec<Waves> {
+///
+/// # Errors
+/// That so short a step has too many rows.
+pub(super) fn waves(layers: &[Layer], rows: &[(f64, f64)], until_s: f64) -> Result<Vec<Waves>, String> {
     let spacing_s = rows.windows(2).map(|pair| pair[1].0 - pair[0].0).fold(f64::INFINITY, f64::min);
     let step_s = step_s(layers, spacing_s);
     let steps: Vec<usize> = layers.iter().map(|layer| (layer.travel_s / step_s).round() as usize).collect();
     let start_s = rows[0].0;
+    refuse_too_many(until_s.max(rows[rows.len() - 1].0) - start_s, step_s).map_err(|message| {
+        format!("following its wave through the layers {message}, or leave thin layers out")
+    })?;
     let arriving = record::resampled(rows, step_s);
     let count = (((until_s - start_s) / step_s).ceil().max(0.0) as usize).max(arriving.len());
     let last = layers.len() - 1;
@@ -59,7 +67,7 @@ pub(super) fn waves(layers: &[Layer], rows: &[(f64, f64)], until_s: f64) -> Vec<
         let row = |(i, a): (usize, &f64)| (start_s + i as f64 * step_s, *a);
         wave.iter().enumerate().step_by(every).map(row).collect()
     };
-    up.iter().zip(&down).map(|(up, down)| Waves { up: kept(up), down: kept(down) }).collect()
+    Ok(up.iter().zip(&down).map(|(up, down)| Waves { up: kept(up), down: kept(down) }).collect())
 }
 
 /// A step of which all layers above the lowest, and the way to its upper border, are nearly whole numbers.
@@ -110,7 +118,7 @@ mod tests {
                 .map(|i| f64::from(i) * 5e-4)
                 .map(|t| (t, (TAU * hz * t).sin() * (t / 2.0).min(1.0)))
                 .collect();
-            let found = waves(&LAYERS, &rows, 10.0);
+            let found = waves(&LAYERS, &rows, 10.0).unwrap();
             // The ground moves twice as much as the wave that it sends back; after seconds the start is forgotten.
             let late = found[2].down.iter().filter(|(t, _)| (8.0..10.0).contains(t));
             let largest = late.map(|(_, a)| 2.0 * a.abs()).fold(0.0, f64::max);
@@ -120,10 +128,16 @@ mod tests {
     }
 
     #[test]
+    fn a_record_that_would_have_too_many_rows_in_layers_is_refused() {
+        let message = waves(&LAYERS, &[(0.0, 0.0), (1e-9, 1.0), (60.0, 0.0)], 1.0).unwrap_err();
+        assert!(message.contains("limit 10000000") && message.contains("thin layers"), "{message}");
+    }
+
+    #[test]
     fn equal_layers_let_a_wave_through_and_the_ground_sends_it_back() {
         let layer = |travel_s: f64| Layer { impedance: 1e6, travel_s };
         let rows = [(0.0, 0.0), (0.01, 1.0), (0.02, 0.0)];
-        let found = waves(&[layer(0.02), layer(0.05), layer(0.03)], &rows, 0.3);
+        let found = waves(&[layer(0.02), layer(0.05), layer(0.03)], &rows, 0.3).unwrap();
         let peak = |wave: &[(f64, f64)]| wave.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap();
         for (wave, time_s) in [
             (&found[0].up, 0.01),
