@@ -48,7 +48,17 @@ impl Simulation {
         }
     }
 
-    /// Keeps what bolts remember before the end of a step is looked for, or goes back to it.
+    /// Evaluates contact and bolts in some way that changes neither what they remember nor the forces of the step.
+    pub(super) fn without_memory<T>(&mut self, evaluate: impl FnOnce(&mut Self) -> T) -> T {
+        let (contact, force) = (self.state.contact.clone(), self.scratch.force.clone());
+        self.keep_bolts();
+        let found = evaluate(self);
+        (self.state.contact, self.scratch.force) = (contact, force);
+        self.put_bolts_back();
+        found
+    }
+
+    /// Keeps what bolts remember, before something is tried from which there is a way [back](Self::put_bolts_back).
     pub(crate) fn keep_bolts(&mut self) {
         if let Some(bolts) = &mut self.bolts {
             bolts.before.copy_from(&self.state.bolts);

@@ -14,8 +14,10 @@ impl Simulation {
     /// # Errors
     /// [`StepError::Contact`] when contact cannot be computed.
     pub fn contact_rates2(&mut self, depth_over_height: f64) -> Result<Vec<f64>, StepError> {
-        let (untouched, force) = (self.state.contact.clone(), self.scratch.force.clone());
-        self.keep_bolts();
+        self.without_memory(|simulation| simulation.rates2_where_swollen(depth_over_height))
+    }
+
+    fn rates2_where_swollen(&mut self, depth_over_height: f64) -> Result<Vec<f64>, StepError> {
         for block in self.problem.blocks.ids() {
             let (nodes, shape) =
                 (self.problem.blocks.nodes_of(block), &self.problem.shapes[self.bodies[block.index()].shape]);
@@ -29,8 +31,6 @@ impl Simulation {
         self.scratch.is_without_friction = true;
         let found = self.add_contact_forces(None);
         self.scratch.is_without_friction = false;
-        (self.state.contact, self.scratch.force) = (untouched, force);
-        self.put_bolts_back();
         found.map(|_| self.problem.blocks.ids().map(|block| self.contact_rate2(block)).collect())
     }
 

@@ -53,16 +53,15 @@ impl Simulation {
         Ok(())
     }
 
-    /// Loads and contact where the blocks are now [N]; nothing of it is remembered.
+    /// Loads and contact where the blocks are now [N], which are then the forces of the step, too; nothing else of it is remembered.
     pub(crate) fn force_at_start(&mut self) -> Result<Vec<Vec3>, StepError> {
-        let untouched = self.state.contact.clone();
-        self.keep_bolts();
-        self.scratch.force.copy_from_slice(self.loads.total());
-        self.scratch.contact_position.copy_from_slice(&self.state.position);
-        let found = self.add_contact_forces(None);
-        self.state.contact = untouched;
-        self.put_bolts_back();
-        found.map(|_| self.scratch.force.clone())
+        let force = self.without_memory(|simulation| {
+            simulation.scratch.force.copy_from_slice(simulation.loads.total());
+            simulation.scratch.contact_position.copy_from_slice(&simulation.state.position);
+            simulation.add_contact_forces(None).map(|_| simulation.scratch.force.clone())
+        })?;
+        self.scratch.force.copy_from_slice(&force);
+        Ok(force)
     }
 }
 

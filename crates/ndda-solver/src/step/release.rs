@@ -51,24 +51,21 @@ pub(super) struct ContactNow {
 impl Simulation {
     /// Contact at the present positions; nothing of it is remembered.
     pub(super) fn contact_now(&mut self) -> Result<ContactNow, StepError> {
-        let nodes = self.state.position.len();
-        let kept = (self.state.contact.clone(), std::mem::take(&mut self.scratch.force));
-        self.scratch.force = vec![Vec3::zeros(); nodes];
-        self.scratch.contact_position.copy_from_slice(&self.state.position);
-        let found = if self.contact.is_some() || self.has_bolts() {
-            self.add_contact_forces(None).map(|_| ())
-        } else {
-            Ok(())
-        };
-        let mut facets = Vec::new();
-        self.add_facets(&mut facets);
-        self.state.contact = kept.0;
-        let force = std::mem::replace(&mut self.scratch.force, kept.1);
-        let mut friction = vec![Vec3::zeros(); nodes];
-        if self.scratch.friction_force.len() == nodes {
-            friction.copy_from_slice(&self.scratch.friction_force);
-        }
-        found.map(|()| ContactNow { force, friction, facets })
+        self.without_memory(|simulation| {
+            simulation.scratch.force.fill(Vec3::zeros());
+            simulation.scratch.contact_position.copy_from_slice(&simulation.state.position);
+            if simulation.contact.is_some() || simulation.has_bolts() {
+                simulation.add_contact_forces(None)?;
+            }
+            let mut facets = Vec::new();
+            simulation.add_facets(&mut facets);
+            let force = simulation.scratch.force.clone();
+            let mut friction = vec![Vec3::zeros(); force.len()];
+            if simulation.scratch.friction_force.len() == force.len() {
+                friction.copy_from_slice(&simulation.scratch.friction_force);
+            }
+            Ok(ContactNow { force, friction, facets })
+        })
     }
 
     /// Friction and bonds between removed blocks and the others, per node [N]. Weights are linear in place, so that force and moment are exact.
@@ -203,4 +200,47 @@ fn on_triangle(nodes: [usize; 3], corners: [Vec3; 3], at: &Vec3) -> [(usize, f64
     let over = normal.norm_squared();
     let part = |from: Vec3, to: Vec3| normal.dot(&(to - from).cross(&(at - from))) / over;
     [(nodes[0], part(b, c)), (nodes[1], part(c, a)), (nodes[2], part(a, b))]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bolts::setup::{BoltSetup, Grout, Steel};
+    use crate::step::test_boxes::boxes;
+
+    #[test]
+    fn a_look_at_contact_changes_nothing_that_bolts_remember() {
+        let foot = (BodyKind::Fixed, [1.0; 3], [0.0; 3]);
+        let top = (BodyKind::Rigid, [1.0; 3], [0.0, 0.0, 1.0]);
+        let mut setup = boxes(&[foot, top]);
+        let at = |height_m: f64| Vec3::new(0.5, 0.5, height_m) - setup.blocks.origin_m;
+        setup.bolts.push(BoltSetup {
+            name: "anchor".into(),
+            from_m: at(1.9),
+            to_m: at(0.1),
+            steel: Steel {
+                young_pa: 2e11,
+                area_m2: 5e-4,
+                yield_n: f64::INFINITY,
+                break_strain: f64::INFINITY,
+            },
+            grout: Grout { stiffness_n_m2: 1e9, strength_n_m: 1e4, from_m: 0.0, to_m: 1.8 },
+            dowel: None,
+            pretension_n: 0.0,
+            plate: None,
+            segment_m: None,
+            is_installed: true,
+            absent: Vec::new(),
+        });
+        let mut simulation = Simulation::new(setup).unwrap();
+        let force = simulation.scratch.force.clone();
+        // Pulled out by a centimetre, its grout slips.
+        let nodes = simulation.problem.blocks.nodes_of(BlockId(1));
+        simulation.state.position[nodes.clone()].iter_mut().for_each(|x| x.z += 1e-2);
+        let before = simulation.state.clone();
+        let contact = simulation.contact_now().unwrap();
+        assert!(contact.force[nodes].iter().sum::<Vec3>().z < -1e3, "the bolt pulls");
+        assert_eq!(simulation.state, before);
+        assert_eq!(simulation.scratch.force, force);
+    }
 }

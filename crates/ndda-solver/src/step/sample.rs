@@ -214,15 +214,13 @@ impl Simulation {
     /// # Errors
     /// [`StepError::Contact`] when contact cannot be computed.
     pub fn contacts_at_start(&mut self) -> Result<(ContactReport, Vec<FacetContact>), StepError> {
-        let (remembered, force) = (self.state.contact.clone(), self.scratch.force.clone());
-        self.keep_bolts();
-        self.scratch.contact_position.copy_from_slice(&self.state.position);
-        let found = self.add_contact_forces(None);
-        let mut facets = Vec::new();
-        self.add_facets(&mut facets);
-        (self.state.contact, self.scratch.force) = (remembered, force);
-        self.put_bolts_back();
-        found.map(|report| (report, facets))
+        self.without_memory(|simulation| {
+            simulation.scratch.contact_position.copy_from_slice(&simulation.state.position);
+            let found = simulation.add_contact_forces(None);
+            let mut facets = Vec::new();
+            simulation.add_facets(&mut facets);
+            found.map(|report| (report, facets))
+        })
     }
 
     /// Takes contact's information on the step just done, before contact is evaluated again.
