@@ -76,6 +76,7 @@ impl Simulation {
                 self.state.velocity[nodes].iter_mut().for_each(|v| *v *= left);
             }
         }
+        self.note_blow();
         Ok(report)
     }
 

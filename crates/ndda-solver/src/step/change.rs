@@ -129,6 +129,7 @@ impl Simulation {
             let rotation = shape.supports.frame.rotation(&shape.operator, position, &center);
             let rotation = rotation.expect("its turn was compared before");
             shape.stop_held(&rotation, &mut self.state.velocity[nodes]);
+            self.note_blow();
         }
     }
 

@@ -109,9 +109,13 @@ impl Simulation {
         let moment = after.angular_momentum - before.angular_momentum + offset.cross(&impulse);
         self.audit.ledger.add_whole_impulse(impulse, moment);
         self.audit.ledger.add_work(0.0, 0.0, after.kinetic_j - before.kinetic_j, 0.0);
-        // A blow is no force that the next step feels, too.
-        self.state.contact.bodies.clear();
+        self.note_blow();
         Ok(())
+    }
+
+    /// Velocities have changed between steps: that is no force that the next step feels, too.
+    pub(super) fn note_blow(&mut self) {
+        self.state.contact.bodies.clear();
     }
 
     fn drivable(&self, block: BlockId, vectors: &[(&'static str, Vec3)]) -> Result<(), DriveError> {
@@ -158,6 +162,52 @@ impl Motion {
             momentum: shape.operator.momentum(velocity),
             angular_momentum: shape.operator.angular_momentum(&Vec3::zeros(), position, velocity),
             kinetic_j: shape.operator.kinetic_energy_j(velocity),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use ndda_contact::{PotentialContact, RestitutionTable};
+
+    use super::*;
+    use crate::LocalDamping;
+    use crate::step::adaptive_damping::AdaptiveDamping;
+    use crate::step::test_boxes::boxes;
+
+    /// A cube that rests on a fixed one by contact that is damped, after some steps.
+    fn damped() -> Simulation {
+        let foot = (BodyKind::Fixed, [1.0; 3], [0.0; 3]);
+        let top = (BodyKind::Rigid, [1.0; 3], [0.0, 0.0, 1.0]);
+        let mut setup = boxes(&[foot, top]);
+        let table = RestitutionTable::everywhere(0.5);
+        setup.contact = Some(Box::new(PotentialContact::new(1e8).with_restitution(table)));
+        let mut simulation = Simulation::new(setup).unwrap();
+        for _ in 0..3 {
+            simulation.step().unwrap();
+        }
+        assert_eq!(simulation.state.contact.bodies.len(), 2);
+        simulation
+    }
+
+    #[test]
+    fn a_change_of_velocity_between_steps_is_no_force_for_the_damping_of_contact() {
+        let changes: [&dyn Fn(&mut Simulation); 6] = [
+            &|simulation| simulation.set_velocity(BlockId(1), Vec3::x(), Vec3::zeros()).unwrap(),
+            &|simulation| simulation.push(&vec![Vec3::x(); simulation.state.velocity.len()]),
+            &|simulation| simulation.stop_all(),
+            &|simulation| simulation.begin_at_rest(simulation.state.velocity.clone()),
+            &|simulation| {
+                simulation.step_with_local_damping(&mut LocalDamping::new(0.5)).unwrap();
+            },
+            &|simulation| {
+                simulation.step_with_adaptive_damping(&mut AdaptiveDamping::default()).unwrap();
+            },
+        ];
+        for (k, change) in changes.into_iter().enumerate() {
+            let mut simulation = damped();
+            change(&mut simulation);
+            assert!(simulation.state.contact.bodies.is_empty(), "change {k}");
         }
     }
 }

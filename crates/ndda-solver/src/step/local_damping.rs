@@ -66,12 +66,13 @@ impl Simulation {
         for block in self.problem.blocks.ids() {
             self.damp_block(block, damping);
         }
+        self.note_blow();
         Ok(report)
     }
 
     /// Adds velocities, per node, to those of all blocks that are not fixed; not part of the balance either.
     pub fn push(&mut self, velocity: &[Vec3]) {
-        self.state.contact.bodies.clear();
+        self.note_blow();
         for block in self.problem.blocks.ids() {
             if self.shape(block).kind == BodyKind::Fixed {
                 continue;

@@ -181,10 +181,15 @@ impl Simulation {
         if self.scratch.contact_has_acted {
             let rates2: Vec<f64> = self.blocks().ids().map(|block| self.contact_rate2(block)).collect();
             let (blocks, velocity) = (&self.problem.blocks, &mut self.state.velocity);
+            let mut is_blow = false;
             masses.follow(&rates2, KEPT, &mut |block, old_over_new| {
                 let nodes = blocks.nodes_of(BlockId(block as u32));
                 velocity[nodes].iter_mut().for_each(|v| *v *= old_over_new.sqrt());
+                is_blow |= old_over_new != 1.0;
             });
+            if is_blow {
+                self.note_blow();
+            }
         }
         for (index, factor) in masses.factor.iter().enumerate() {
             let nodes = self.problem.blocks.nodes_of(BlockId(index as u32));

@@ -164,6 +164,7 @@ impl Simulation {
     pub fn begin_to_settle(&mut self, settle: &Settle) -> Settling {
         let nodes = self.state.velocity.len();
         let start = std::mem::replace(&mut self.state.velocity, vec![Vec3::zeros(); nodes]);
+        self.note_blow();
         let damping = self.damping_of(settle);
         let masses = if settle.mass_scaling { self.masses_to_settle_with(damping) } else { None };
         self.put_on(masses);
@@ -256,7 +257,7 @@ impl Simulation {
     ) -> Result<(Settled, StepReport), StepError> {
         let (step, (old, _)) = (self.state.step, self.look()?);
         let before = self.audit.ledger.clone();
-        self.state.velocity.fill(Vec3::zeros());
+        self.stop_all();
         self.rest_on_quiet_faces();
         let damping = self.damping_of(settle);
         let masses = if settle.mass_scaling { self.masses_in_stages(damping) } else { None };
@@ -269,7 +270,7 @@ impl Simulation {
         let last = last?;
         self.settling = None;
         let Some(report) = last else { return Ok((settling.settled, StepReport::default())) };
-        self.state.velocity.fill(Vec3::zeros());
+        self.stop_all();
         self.state.step = step + ramp_steps;
         let way = std::mem::replace(&mut self.audit.ledger, before);
         self.audit.ledger.begin_anew_at_contact();
@@ -286,6 +287,12 @@ impl Simulation {
             self.audit.ledger.watch_depth(contact.max_penetration_ratio);
         }
         Ok((settling.settled, report))
+    }
+
+    /// Stops all nodes.
+    pub(super) fn stop_all(&mut self) {
+        self.state.velocity.fill(Vec3::zeros());
+        self.note_blow();
     }
 
     /// How far the centre of each block has gone [m], the farthest first.

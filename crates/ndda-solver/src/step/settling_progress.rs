@@ -1,7 +1,7 @@
 //! How a scene comes to rest, step by step: what damps it, and what is left of its motion.
 
+use ndda_mesh::BlockId;
 use ndda_mesh::geometry::Aabb;
-use ndda_mesh::{BlockId, Vec3};
 use ndda_ranks::ExactSum;
 use serde::{Deserialize, Serialize};
 
@@ -82,7 +82,7 @@ impl Progress {
         match &self.damper {
             Damper::Kinetic => {
                 if past_peak {
-                    simulation.state.velocity.fill(Vec3::zeros());
+                    simulation.stop_all();
                 }
                 // An oscillation that has no more energy than rounding gives it is over.
                 let is_over = past_peak && peak_j <= rounding_j(simulation);
@@ -131,6 +131,7 @@ mod tests {
     use crate::bodies::prototype::ForceSetup;
     use crate::step::settle::Settle;
     use crate::step::test_boxes::boxes;
+    use ndda_mesh::Vec3;
 
     /// Steps that a cube takes to rest on a fixed base that bears this load [N], from where contact does not carry it yet.
     fn steps_to_rest(load_n: f64) -> u64 {

@@ -129,6 +129,7 @@ impl Simulation {
     pub(crate) fn begin_at_rest(&mut self, velocity: Vec<Vec3>) {
         self.state.start = self.state.position.clone();
         self.state.velocity = velocity;
+        self.note_blow();
         self.state.acceleration.fill(Vec3::zeros());
         self.state.inertia.fill(Inertia::default());
         self.state.step = 0;

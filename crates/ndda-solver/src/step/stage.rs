@@ -170,6 +170,7 @@ impl Simulation {
         for &block in removed.iter().chain(added) {
             let nodes = self.problem.blocks.nodes_of(block);
             self.state.velocity[nodes.clone()].fill(Vec3::zeros());
+            self.note_blow();
             let State { acceleration, internal_force, contact_force, .. } = &mut self.state;
             for values in [acceleration, internal_force, contact_force] {
                 values.get_mut(nodes.clone()).into_iter().flatten().for_each(|value| *value = Vec3::zeros());

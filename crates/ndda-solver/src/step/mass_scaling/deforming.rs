@@ -129,6 +129,9 @@ impl Simulation {
                     .for_each(|v| *v /= slower);
             }
         }
+        if !grown.is_empty() {
+            self.note_blow();
+        }
         self.scratch.scaled_masses = Some(masses);
         self.factor_anew(&grown)
     }
