@@ -49,6 +49,7 @@ use crate::step::report::StageTimes;
 use crate::step::report::StepReport;
 
 use ndda_contact::{Body as ContactBody, ContactModel, FacetContact};
+use ndda_fem::Table;
 use ndda_mesh::{BlockSet, Vec3};
 use rayon::prelude::*;
 
@@ -137,6 +138,8 @@ pub(crate) struct Problem {
     pub(crate) base_step_s: f64,
     /// Gravity \[m/s²\].
     pub(crate) gravity_m_s2: Vec3,
+    /// Factor on it over time; constant without.
+    pub(crate) gravity_factor: Option<Table>,
     /// Which blocks move by an affine map; empty without contact.
     pub(crate) affine: Vec<bool>,
     pub(crate) min_friction_coefficient: f64,

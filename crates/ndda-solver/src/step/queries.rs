@@ -116,8 +116,15 @@ impl Simulation {
         if shape.kind == BodyKind::Fixed {
             return false;
         }
-        let gravity_m_s2 = self.problem.gravity_m_s2;
+        let gravity_m_s2 = self.gravity_of_last_step() * self.problem.gravity_m_s2;
         (self.acceleration_m_s2(block) - gravity_m_s2).norm() < 1e-3 * gravity_m_s2.norm()
+    }
+
+    /// Part of gravity that acted in the last step, or in the last part of one that was divided.
+    fn gravity_of_last_step(&self) -> f64 {
+        let Some(factor) = &self.problem.gravity_factor else { return 1.0 };
+        let lead = self.weights.load_lead;
+        factor.between(self.clock_s(lead - 1.5), self.clock_s(lead - 0.5)).mean
     }
 
     /// Blocks that fall freely below every block that does not, along gravity: nothing is left on which they could land.
@@ -167,5 +174,29 @@ impl Simulation {
     /// Seconds per stage so far.
     pub fn stages(&self) -> StageTimes {
         self.audit.stages
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::integrators::newmark::Newmark;
+    use crate::step::test_boxes::boxes;
+
+    #[test]
+    fn a_block_falls_freely_while_gravity_still_grows() {
+        let roof = (BodyKind::Fixed, [1.0; 3], [0.0, 0.0, 2.0]);
+        let cube = (BodyKind::Rigid, [1.0; 3], [0.0; 3]);
+        let ramp = || Some(Table { rows: vec![(0.0, 0.0), (1.0, 1.0)] });
+        let setup = || crate::Setup { gravity_factor: ramp(), ..boxes(&[roof, cube]) };
+        let newmark = Box::new(Newmark { alpha: 0.25, delta: 0.5 });
+        for setup in [setup(), crate::Setup { integrator: newmark, ..setup() }] {
+            let mut simulation = Simulation::new(setup).unwrap();
+            for _ in 0..20 {
+                simulation.step().unwrap();
+                assert!(simulation.falls_freely(BlockId(1)));
+            }
+            assert_eq!(simulation.fallen_out(), [BlockId(1)]);
+        }
     }
 }

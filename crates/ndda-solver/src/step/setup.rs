@@ -155,6 +155,7 @@ impl Simulation {
                 shapes,
                 base_step_s: step_s,
                 gravity_m_s2,
+                gravity_factor: gravity_factor.clone(),
                 integrator,
                 solver,
             },
