@@ -1,6 +1,7 @@
 //! Adaptive dynamic relaxation: viscous damping that is critical for the slowest oscillation that is left.
 
 use ndda_mesh::{BlockId, Vec3};
+use ndda_ranks::ExactSum;
 use serde::{Deserialize, Serialize};
 
 use crate::bodies::kind::BodyKind;
@@ -64,10 +65,14 @@ impl Simulation {
         damping.before.clone_from(&self.state.velocity);
         let report = self.step()?;
         damping.impulse.resize(self.state.velocity.len(), Vec3::zeros());
-        let mut sums = Sums::default();
+        let (mut curved, mut moving, mut changed) = (ExactSum::new(), ExactSum::new(), ExactSum::new());
         for block in self.problem.blocks.ids() {
-            self.add_block(block, damping, &mut sums);
+            let of_block = self.sums_of_block(block, damping);
+            curved.add(of_block.curved);
+            moving.add(of_block.moving);
+            changed.add(of_block.changed);
         }
+        let sums = Sums { curved: curved.value(), moving: moving.value(), changed: changed.value() };
         damping.change_j = 0.5 * sums.changed;
         let left = damping.left(&sums);
         for block in self.problem.blocks.ids() {
@@ -80,11 +85,11 @@ impl Simulation {
         Ok(report)
     }
 
-    /// Notes the impulses of a block's nodes, and adds it to the sums.
-    fn add_block(&self, block: BlockId, damping: &mut AdaptiveDamping, sums: &mut Sums) {
-        let shape = self.shape(block);
+    /// Notes the impulses of a block's nodes, and gives its part of the sums.
+    fn sums_of_block(&self, block: BlockId, damping: &mut AdaptiveDamping) -> Sums {
+        let (shape, mut sums) = (self.shape(block), Sums::default());
         if shape.kind == BodyKind::Fixed {
-            return;
+            return sums;
         }
         let (nodes, factor) = (self.problem.blocks.nodes_of(block), self.inertia_factor(block));
         for (node, mass_kg) in nodes.zip(&shape.operator.node_mass) {
@@ -96,6 +101,7 @@ impl Simulation {
             sums.changed += mass * change.norm_squared();
             damping.impulse[node] = impulse;
         }
+        sums
     }
 }
 

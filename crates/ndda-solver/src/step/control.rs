@@ -15,12 +15,13 @@
 
 use crate::bodies::step_damping::StepDamping;
 use crate::bodies::workspaces::Workspaces;
+use crate::diagnostics::block_sums::over_blocks;
 use crate::diagnostics::ledger::Ledger;
 use crate::error::StepError;
 use crate::linear::linear_solver::Factor;
-use crate::step::Simulation;
 use crate::step::report::StepReport;
 use crate::step::state::{State, StepState};
+use crate::step::{Scratch, Simulation};
 
 /// When a step is too long.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -233,14 +234,15 @@ impl Simulation {
 
     /// √(Σ s e²) √(Σ s Δx²): by how much the work of linear contact in the step just done may differ from what it stores, if anything touched [J].
     fn contact_work_error_j(&self) -> f64 {
-        let places = self.scratch.contact_position.iter().zip(&self.state.position);
-        let (mut off_j, mut moved_j) = (0.0, 0.0);
-        for ((x_star, x), (moved, s)) in
-            places.zip(self.scratch.moved.iter().zip(&self.scratch.contact_stiffness))
-        {
-            off_j += s * (x_star - x + 0.5 * moved).norm_squared();
-            moved_j += s * moved.norm_squared();
-        }
+        let (Scratch { contact_position, moved, contact_stiffness, .. }, State { position, .. }) =
+            (&self.scratch, &self.state);
+        let starts = self.problem.blocks.node_starts();
+        let off_j = over_blocks(starts, |nodes| {
+            let off = |n: usize| (contact_position[n] - position[n] + 0.5 * moved[n]).norm_squared();
+            nodes.map(|n| contact_stiffness[n] * off(n)).sum()
+        });
+        let moved_j =
+            over_blocks(starts, |nodes| nodes.map(|n| contact_stiffness[n] * moved[n].norm_squared()).sum());
         (off_j * moved_j).sqrt()
     }
 

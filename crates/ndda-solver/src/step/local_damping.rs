@@ -1,6 +1,7 @@
 //! Local damping: what is out of balance is damped, and nothing else.
 
 use ndda_mesh::{BlockId, Vec3};
+use ndda_ranks::ExactSum;
 use serde::{Deserialize, Serialize};
 
 use crate::bodies::kind::BodyKind;
@@ -59,13 +60,14 @@ impl Simulation {
     pub fn step_with_local_damping(&mut self, damping: &mut LocalDamping) -> Result<StepReport, StepError> {
         damping.change.clone_from(&self.state.velocity);
         let report = self.step()?;
-        damping.change_j = 0.0;
         if damping.steps.is_some() {
             damping.mean.resize(self.state.velocity.len(), Vec3::zeros());
         }
+        let mut change_j = ExactSum::new();
         for block in self.problem.blocks.ids() {
-            self.damp_block(block, damping);
+            change_j.add(self.damp_block(block, damping));
         }
+        damping.change_j = change_j.value();
         self.note_blow();
         Ok(report)
     }
@@ -83,10 +85,11 @@ impl Simulation {
         }
     }
 
-    fn damp_block(&mut self, block: BlockId, damping: &mut LocalDamping) {
+    /// Damps a block; gives the kinetic energy that the change of its velocities would be by itself [J].
+    fn damp_block(&mut self, block: BlockId, damping: &mut LocalDamping) -> f64 {
         let shape = &self.problem.shapes[self.bodies[block.index()].shape];
         if shape.kind == BodyKind::Fixed {
-            return;
+            return 0.0;
         }
         let inertia_factor = self.inertia_factor(block);
         let nodes = self.problem.blocks.nodes_of(block);
@@ -96,11 +99,10 @@ impl Simulation {
             *change = v - *change;
         }
         let change_j = shape.operator.kinetic_energy_j(change);
-        damping.change_j += inertia_factor * change_j;
         let Some(steps) = damping.steps else {
             let left = left(damping.factor, change_j, shape.operator.kinetic_energy_j(velocity));
             velocity.iter_mut().for_each(|v| *v *= left);
-            return;
+            return inertia_factor * change_j;
         };
         let mean = &mut damping.mean[nodes];
         for ((vibration, mean), v) in change.iter_mut().zip(mean.iter_mut()).zip(velocity.iter()) {
@@ -111,6 +113,7 @@ impl Simulation {
         for (v, vibration) in velocity.iter_mut().zip(change.iter()) {
             *v -= (1.0 - left) * vibration;
         }
+        inertia_factor * change_j
     }
 }
 

@@ -14,6 +14,7 @@ use std::ops::ControlFlow;
 
 use ndda_mesh::geometry::Aabb;
 use ndda_mesh::{BlockId, Vec3};
+use ndda_ranks::ExactSum;
 use serde::{Deserialize, Serialize};
 
 use crate::error::StepError;
@@ -326,16 +327,39 @@ impl Simulation {
         }
     }
 
+    /// Kinetic energy of all blocks [J].
     pub(super) fn kinetic_energy_j(&self) -> f64 {
         let of_block = |block: BlockId| {
             let nodes = self.blocks().nodes_of(block);
             self.inertia_factor(block)
                 * self.shape(block).operator.kinetic_energy_j(&self.state.velocity[nodes])
         };
-        let mut total_j = 0.0;
-        for block in self.blocks().ids() {
-            total_j += of_block(block);
+        self.blocks().ids().map(of_block).collect::<ExactSum>().value()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bodies::kind::BodyKind;
+    use crate::step::test_boxes::boxes;
+
+    /// Far apart, of which one has so much energy that those of the others are lost beside it one by one.
+    fn flying(speeds_m_s: [f64; 3]) -> Simulation {
+        let cube = |k: usize| (BodyKind::Rigid, [1.0; 3], [0.0, 1e3 * k as f64, 0.0]);
+        let mut setup = boxes(&[cube(0), cube(1), cube(2)]);
+        (setup.contact, setup.gravity_m_s2) = (None, Vec3::zeros());
+        for (body, speed_m_s) in setup.bodies.iter_mut().zip(speeds_m_s) {
+            body.velocity_m_s = speed_m_s * Vec3::x();
         }
-        total_j
+        Simulation::new(setup).unwrap()
+    }
+
+    #[test]
+    fn the_order_of_blocks_does_not_matter_on_the_way_to_rest() {
+        let orders = [[1e8, 1.0, 1.0], [1.0, 1.0, 1e8]];
+        let [first, second] = orders.map(|speeds_m_s| flying(speeds_m_s).kinetic_energy_j());
+        assert_eq!(first, second);
+        assert_ne!(first, flying([1e8, 0.0, 0.0]).kinetic_energy_j(), "the small ones count");
     }
 }

@@ -117,7 +117,7 @@ fn rounding_j(simulation: &Simulation) -> f64 {
     let speed_m_s = 2.0 * f64::EPSILON * bounds.min.abs().sup(&bounds.max.abs()).max() / simulation.part_s;
     let mass_kg = |block| simulation.inertia_factor(block) * simulation.shape(block).operator.mass_kg;
     let moving = simulation.blocks().ids().filter(|&block| simulation.shape(block).kind != BodyKind::Fixed);
-    0.5 * speed_m_s * speed_m_s * moving.map(mass_kg).sum::<f64>()
+    0.5 * speed_m_s * speed_m_s * moving.map(mass_kg).collect::<ExactSum>().value()
 }
 
 /// Speed of an energy over that of another.
