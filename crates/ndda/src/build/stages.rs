@@ -56,12 +56,15 @@ fn at_stage(scene: &Scene, stage: usize, faults: Vec<Fault>) -> Vec<Fault> {
     faults.into_iter().map(place).collect()
 }
 
+/// Rounding of a quotient of two decimal numbers: a step that is only that much too many is none.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
 /// Steps of a stage, at least one.
 pub(crate) fn steps_of_stage(stage: &Stage, step_s: f64) -> u64 {
     let steps = (stage.time_s() / step_s).round() as u64;
     match stage.then {
         // What changes over a time has changed when the scene comes to rest.
-        Then::Settle { .. } => ((stage.over_s / step_s).ceil() as u64).max(1),
+        Then::Settle { .. } => ((stage.over_s / step_s * (1.0 - ROUNDING)).ceil() as u64).max(1),
         Then::Run(_) => steps.max(1),
     }
 }
@@ -75,6 +78,23 @@ mod tests {
 
     use super::*;
     use crate::Model;
+
+    #[test]
+    fn a_time_that_is_a_whole_number_of_steps_takes_that_many() {
+        let stage = |over_s: f64| -> Stage {
+            let text = format!(
+                r#"(title: "t", time: (step_s: 1e-3, end_s: 1), materials: [(name: "rock", density_kg_m3: 2600, young_pa: 2e10, poisson: 0.25)],
+                    blocks: [(name: "b", material: "rock", shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)))], contact: Potential(penalty_pa: 1e9),
+                    stages: [(name: "s", over_s: {over_s}, then: Settle())])"#
+            );
+            ndda_io::read::load_text("t.ron", &text, &[], None).unwrap().scene.stages.remove(0)
+        };
+        for (over_s, step_s, steps) in
+            [(8.05, 1e-3, 8050), (0.3, 0.1, 3), (8.0505, 1e-3, 8051), (1e-3, 1e-3, 1), (0.0, 1e-3, 1)]
+        {
+            assert_eq!(steps_of_stage(&stage(over_s), step_s), steps, "{over_s} s by {step_s} s");
+        }
+    }
 
     #[test]
     fn nothing_pulls_at_blocks_that_are_taken_out_of_a_scene_with_quiet_faces() {
