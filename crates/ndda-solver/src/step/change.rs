@@ -7,7 +7,9 @@ use ndda_mesh::BlockId;
 use crate::bodies::kind::BodyKind;
 use crate::error::StepError;
 use crate::step::Simulation;
+use crate::step::follower::Places;
 use crate::step::snapshot::RestoreError;
+use crate::step::state::State;
 
 /// A block that has turned by more [rad] than this cannot be held in a way that stops its turning: its strains would be measured without the
 /// turn, which changes them by half its square, 5e-7.
@@ -133,10 +135,12 @@ impl Simulation {
         }
     }
 
-    /// Whether loads or supports differ from those of a simulation of the same blocks.
+    /// Whether loads at the present time, or supports, differ from those of a simulation of the same blocks.
     fn pulls_otherwise(&self, before: &Self) -> bool {
-        let same_loads = self.loads.constant() == before.loads.constant()
-            && self.loads.changing().is_empty() == before.loads.changing().is_empty();
+        let (now_s, State { position, velocity, .. }) = (before.clock_s(0.0), &before.state);
+        let [new, old] = [self, before]
+            .map(|simulation| simulation.loads.at(now_s, Places { position, velocity, lead_s: 0.0 }));
+        let same_loads = new == old;
         let same = |block| self.shape(block).supports == before.shape(block).supports;
         !same_loads || !self.problem.blocks.ids().all(same)
     }

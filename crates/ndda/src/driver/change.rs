@@ -170,6 +170,26 @@ mod tests {
         driver.change(&["title=\"beyond the end\"".into()]).unwrap();
     }
 
+    #[test]
+    fn loads_that_vary_stay_at_the_present_time_with_an_integrator_that_remembers_accelerations() {
+        let pushed = |is: &str, force_n: u32, later: u32| {
+            format!(
+                "forces{is}[(block: \"block\", force_n: ({force_n}, 0, 0), factor: [(time_s: 0, factor: 1), (time_s: 0.5, factor: 1), (time_s: 1, factor: {later})])]"
+            )
+        };
+        let text = EXAMPLE.1.replace("end_s: 1.0", "end_s: 1.0, integrator: GeneralizedAlpha()");
+        let text = text.replace("blocks:", &format!("{}, blocks:", pushed(": ", 1000, 1)));
+        let mut driver = Driver::new(Model::from_text(&text).unwrap()).unwrap();
+        driver.step(3).unwrap();
+        let refused = driver.change(&[pushed("=", 2000, 1)]);
+        assert!(
+            matches!(refused, Err(ChangeError::TakeOver(TakeOverError::RemembersAccelerations))),
+            "{refused:?}"
+        );
+        // What changes later contradicts nothing.
+        driver.change(&[pushed("=", 1000, 3)]).unwrap();
+    }
+
     const HOLD: &str = "supports=[(block: \"block\", on: Set(\"z_min\"), hold: Fixed)]";
 
     /// A block that falls has ½ m v² and m v, which supports take in two steps: a face that stops, then all nodes.
