@@ -212,6 +212,11 @@ impl ContactModel for BatchFriction {
         self.gather(input, history);
         self.force_n.clear();
         self.force_n.resize(self.facets.len(), Vec3::zeros());
+        if input.without_friction {
+            // The stiffness of its springs is asked for all the same.
+            self.scatter(output);
+            return Ok(report);
+        }
         if !self.facets.is_empty() {
             let done = self.law.forces(input.dt_s, &self.facets, &mut self.state, &mut self.force_n);
             done.map_err(ContactError::Law)?;
@@ -305,7 +310,7 @@ impl ContactAudit for BatchFriction {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::check_model;
+    use crate::testing::{check_model, evaluate, test_box, test_set};
 
     /// Sliding friction of 0.5, with a count of the steps as its state.
     struct Half;
@@ -339,6 +344,26 @@ mod tests {
     #[test]
     fn it_keeps_the_contract_of_a_contact_model() {
         check_model(&mut BatchFriction::new(PotentialContact::new(1e9), Box::new(Half)));
+    }
+
+    #[test]
+    fn where_friction_is_not_asked_for_its_law_does_not_act() {
+        let blocks = test_set(vec![
+            test_box([0.0; 3], [2.0, 2.0, 1.0], [1, 1, 1]),
+            test_box([0.5, 0.5, 0.99], [1.0; 3], [1, 1, 1]),
+        ]);
+        let (position, mut velocity) =
+            (&blocks.rest_position, vec![Vec3::zeros(); blocks.rest_position.len()]);
+        velocity[blocks.nodes_of(BlockId(1))].fill(Vec3::x());
+        let input = ContactInput::new(&blocks, position, &velocity, 1e-3);
+        let mut model = BatchFriction::new(PotentialContact::new(1e9), Box::new(Half));
+        let mut history = ContactHistory::default();
+        assert!(evaluate(&mut model, &input, &mut history).friction_force.iter().any(|f| f.x != 0.0));
+        let before = history.clone();
+        let without = evaluate(&mut model, &ContactInput { without_friction: true, ..input }, &mut history);
+        assert!(without.friction_force.iter().all(|f| *f == Vec3::zeros()));
+        assert!(without.force.iter().any(|f| f.z > 0.0));
+        assert_eq!(history, before);
     }
 
     #[test]
