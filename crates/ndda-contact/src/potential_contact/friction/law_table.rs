@@ -122,8 +122,12 @@ impl FrictionLawTable {
 
     /// Names of the laws that act, each once.
     pub fn law_names(&self) -> Vec<&'static str> {
-        let mut names: Vec<_> =
-            self.law_of.iter().flatten().map(|&law| self.laws[law as usize].name()).collect();
+        let on_surfaces = self.on_surface.iter().filter_map(|rule| match rule {
+            OnSurface::Own(law) => law.as_ref(),
+            OnSurface::Materials => None,
+        });
+        let laws = self.law_of.iter().flatten().chain(on_surfaces);
+        let mut names: Vec<_> = laws.map(|&law| self.laws[law as usize].name()).collect();
         names.sort_unstable();
         names.dedup();
         names
@@ -176,6 +180,15 @@ impl FrictionLawTable {
 mod tests {
     use super::*;
     use crate::friction::coulomb::Coulomb;
+
+    #[test]
+    fn a_law_that_acts_on_surfaces_only_has_a_name_too() {
+        let mut joints = FrictionLawTable::between(Vec::new(), 1);
+        joints.set_on(&[1], None);
+        assert!(joints.law_names().is_empty());
+        joints.set_on(&[0, 2], Some(Box::new(Coulomb::new(30.0, 1e9))));
+        assert_eq!(joints.law_names(), [Coulomb::new(30.0, 1e9).name()]);
+    }
 
     #[test]
     fn the_least_friction_is_that_of_the_slipperiest_pair() {
