@@ -58,15 +58,16 @@ impl BoltMemory {
         }
     }
 
-    /// Numbers of its values: those of the same bolts agree.
-    pub(crate) fn sizes(&self) -> [usize; 6] {
+    /// Numbers of its values, and what they are of: those of the same bolts agree.
+    pub(crate) fn sizes(&self) -> [(&'static str, usize); 7] {
         [
-            self.displacement_m.len(),
-            self.slip_m.len(),
-            self.yielded_m.len(),
-            self.broken.len(),
-            self.dowel_slip_m.len(),
-            self.dissipated_j.len(),
+            ("bolts", self.dissipated_j.len()),
+            ("nodes of bolts", self.displacement_m.len()),
+            ("springs of bolts", self.slip_m.len()),
+            ("starts of springs of bolts", self.start_m.len()),
+            ("pieces of bolts", self.yielded_m.len()),
+            ("states of pieces of bolts", self.broken.len()),
+            ("crossings of bolts", self.dowel_slip_m.len()),
         ]
     }
 
@@ -118,4 +119,32 @@ fn take<'a, T>(left: &mut &'a mut [T], count: usize) -> &'a mut [T] {
     let (first, rest) = std::mem::take(left).split_at_mut(count);
     *left = rest;
     first
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn memory_of_which_a_part_is_cut_off_has_other_sizes() {
+        let whole = BoltMemory::new(&[Sizes { nodes: 4, holders: 3, crossings: 1 }]);
+        let cut = |cut: fn(&mut BoltMemory)| {
+            let mut memory = whole.clone();
+            cut(&mut memory);
+            memory
+        };
+        let parts: [(&str, BoltMemory); 7] = [
+            ("bolts", cut(|memory| memory.dissipated_j.clear())),
+            ("nodes of bolts", cut(|memory| memory.displacement_m.clear())),
+            ("springs of bolts", cut(|memory| memory.slip_m.clear())),
+            ("starts of springs of bolts", cut(|memory| memory.start_m.clear())),
+            ("pieces of bolts", cut(|memory| memory.yielded_m.clear())),
+            ("states of pieces of bolts", cut(|memory| memory.broken.clear())),
+            ("crossings of bolts", cut(|memory| memory.dowel_slip_m.clear())),
+        ];
+        for (what, memory) in parts {
+            let differs = memory.sizes().into_iter().zip(whole.sizes()).find(|(cut, whole)| cut != whole);
+            assert_eq!(differs.map(|(cut, _)| cut), Some((what, 0)));
+        }
+    }
 }

@@ -41,11 +41,15 @@ pub struct SnapshotView<'a> {
 
 /// A snapshot of another problem.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("it is of {found} nodes, the scene has {expected}: the scene or its meshes have changed")]
+#[error(
+    "it keeps {found} {what}, where the scene has {expected}: the scene, its meshes or its bolts have changed"
+)]
 pub struct RestoreError {
-    /// Nodes of the snapshot.
+    /// Of what there are too many or too few.
+    pub what: &'static str,
+    /// How many the snapshot has.
     pub found: usize,
-    /// Nodes of the problem.
+    /// How many the problem has.
     pub expected: usize,
 }
 
@@ -80,36 +84,10 @@ impl Simulation {
     /// Goes on from a snapshot of the same problem, bit for bit.
     ///
     /// # Errors
-    /// [`RestoreError`] when it has another number of nodes.
+    /// [`RestoreError`] when it has another number of nodes, blocks, or parts of bolts, or was taken with another integrator.
     pub fn restore(&mut self, snapshot: Snapshot) -> Result<(), RestoreError> {
-        let expected = self.problem.blocks.rest_position.len();
+        self.compare_sizes(&snapshot)?;
         let Snapshot { state, ledger, stages, contact_stiffness, step_balance, stage } = snapshot;
-        let internal = self.state.internal_force.len();
-        for (found, expected) in [
-            (state.position.len(), expected),
-            (state.velocity.len(), expected),
-            (state.acceleration.len(), expected),
-            (state.internal_force.len(), internal),
-            (state.inertia.len(), self.state.inertia.len()),
-            (
-                state.driving_force.len(),
-                if state.driving_force.is_empty() { 0 } else { self.problem.blocks.len() },
-            ),
-            (state.kept_force.len(), if state.kept_force.is_empty() { 0 } else { expected }),
-            (state.contact_force.len(), self.state.contact_force.len()),
-            (ledger.block_count(), self.problem.blocks.len()),
-            (
-                contact_stiffness.len(),
-                if contact_stiffness.is_empty() { 0 } else { self.scratch.contact_stiffness.len() },
-            ),
-        ]
-        .into_iter()
-        .chain(state.bolts.sizes().into_iter().zip(self.state.bolts.sizes()))
-        {
-            if found != expected {
-                return Err(RestoreError { found, expected });
-            }
-        }
         (self.state, self.audit.ledger, self.audit.stages) = (state, ledger, stages);
         self.scratch.contact_has_acted = !contact_stiffness.is_empty();
         if self.scratch.contact_has_acted {
@@ -125,6 +103,35 @@ impl Simulation {
         Ok(())
     }
 
+    /// Refuses a snapshot of which something has another size than here.
+    fn compare_sizes(&self, snapshot: &Snapshot) -> Result<(), RestoreError> {
+        let (nodes, blocks) = (self.problem.blocks.rest_position.len(), self.problem.blocks.len());
+        let Snapshot { state, ledger, contact_stiffness, .. } = snapshot;
+        let optional = |found: usize, expected: usize| (found, if found == 0 { 0 } else { expected });
+        let sizes = [
+            ("nodes", (state.position.len(), nodes)),
+            ("velocities of nodes", (state.velocity.len(), nodes)),
+            ("accelerations of nodes", (state.acceleration.len(), nodes)),
+            ("internal forces of nodes", (state.internal_force.len(), self.state.internal_force.len())),
+            ("inertial forces of blocks", (state.inertia.len(), self.state.inertia.len())),
+            ("driving forces of blocks", optional(state.driving_force.len(), blocks)),
+            ("static reactions of nodes", optional(state.kept_force.len(), nodes)),
+            ("contact forces of nodes", (state.contact_force.len(), self.state.contact_force.len())),
+            ("blocks", (ledger.block_count(), blocks)),
+            (
+                "contact stiffnesses of nodes",
+                optional(contact_stiffness.len(), self.scratch.contact_stiffness.len()),
+            ),
+        ];
+        let of_bolts = state.bolts.sizes().into_iter().zip(self.state.bolts.sizes());
+        let of_bolts = of_bolts.map(|((what, found), (_, expected))| (what, (found, expected)));
+        let differs = |(_, (found, expected)): &(&str, (usize, usize))| found != expected;
+        match sizes.into_iter().chain(of_bolts).find(differs) {
+            Some((what, (found, expected))) => Err(RestoreError { what, found, expected }),
+            None => Ok(()),
+        }
+    }
+
     /// Time begins where the blocks are, with these velocities.
     pub(crate) fn begin_at_rest(&mut self, velocity: Vec<Vec3>) {
         self.state.start = self.state.position.clone();
@@ -137,5 +144,25 @@ impl Simulation {
         self.place_loads_now();
         self.state.bolts.forget_work();
         self.audit.ledger = self.new_ledger((Vec3::zeros(), Vec3::zeros()));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bodies::kind::BodyKind;
+    use crate::step::test_boxes::boxes;
+
+    #[test]
+    fn a_snapshot_that_does_not_fit_is_refused_with_what_does_not() {
+        let cube = |at_m: f64| (BodyKind::Rigid, [1.0; 3], [at_m, 0.0, 0.0]);
+        let mut simulation = Simulation::new(boxes(&[cube(0.0), cube(2.0)])).unwrap();
+        let mut snapshot = simulation.snapshot();
+        snapshot.state.driving_force = vec![Vec3::zeros()];
+        let message = simulation.restore(snapshot).unwrap_err().to_string();
+        assert!(message.contains("1 driving forces of blocks, where the scene has 2"), "{message}");
+        let one = Simulation::new(boxes(&[cube(0.0)])).unwrap();
+        let message = simulation.restore(one.snapshot()).unwrap_err().to_string();
+        assert!(message.contains("8 nodes, where the scene has 16"), "{message}");
     }
 }
