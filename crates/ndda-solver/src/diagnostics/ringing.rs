@@ -118,7 +118,7 @@ pub(crate) struct Ringing {
     has_friction: bool,
     is_held: bool,
     /// Whether the last step was the first of all.
-    has_begun: bool,
+    was_first: bool,
     /// Fastest node since contact began [m/s].
     fastest_m_s: f64,
     /// Sum since contact began [m/s].
@@ -142,7 +142,7 @@ impl Ringing {
             self.pressed_m_s2 = if step.is_first { drive.pressed_m_s2 } else { 0.0 };
         }
         let change = [now[0] - self.last[0], now[1] - self.last[1]];
-        if std::mem::replace(&mut self.has_begun, step.is_first) {
+        if std::mem::replace(&mut self.was_first, step.is_first) {
             // The change before the first step is unknown.
             self.change = change;
         }

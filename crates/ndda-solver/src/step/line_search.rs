@@ -7,7 +7,8 @@ const MOST_STRIDES: u32 = 30;
 /// Part of a stride that is tried instead of one that went too far.
 const SHORTER: f64 = 0.25;
 
-/// Illinois's rule of false position.
+/// False position, in which each stride halves the slope that counts at the other end, whichever end moves. By the Illinois rule that happens only where
+/// the same end moves twice in a row; a slope that is only to be halved is found sooner so.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Search {
     start: f64,

@@ -204,10 +204,11 @@ impl Simulation {
 
     /// How the scene is damped on the way.
     fn damping_of(&self, settle: &Settle) -> Damping {
-        let deforms = self.problem.shapes.iter().any(|shape| shape.deforms()) && self.newton.is_none();
+        let deforms = self.problem.shapes.iter().any(|shape| shape.deforms());
         // Friction on velocities may keep blocks vibrating under damping that does not stop them.
         let chatters = self.contact.as_ref().is_some_and(|model| model.needs_bodies());
-        settle.damping.unwrap_or(if deforms && !chatters { Damping::Adaptive } else { Damping::Kinetic })
+        let is_adaptive = deforms && self.newton.is_none() && !chatters;
+        settle.damping.unwrap_or(if is_adaptive { Damping::Adaptive } else { Damping::Kinetic })
     }
 
     /// Runs with damping until all blocks are at rest, and loads and prescribed motions have gone through a ramp; gives the last step, or none where
