@@ -1,6 +1,6 @@
 //! Damped contact of an edge or a corner in a face: what is damped is the approach of the blocks along the force between them, and not that the edge slides.
 
-use ndda_mesh::{BlockId, Vec3};
+use ndda_mesh::Vec3;
 use ndda_solver::Simulation;
 
 use crate::evidence::Answer::{Near, Within};
@@ -10,9 +10,9 @@ use crate::simulation;
 const MATERIAL: &str = "materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: 2650)]";
 const FLOOR: &str = "(name: \"floor\", material: \"rock\", body: Fixed, shape: Box(size_m: (20, 4, 1), cells: (1, 1, 1)), at_m: (-10, -1.5, -1))";
 
-/// Velocity and spin of the last block.
+/// Velocity and spin of the cube or the plank.
 fn motion(simulation: &Simulation) -> (Vec3, Vec3) {
-    let block = BlockId(simulation.blocks().len() as u32 - 1);
+    let block = ["cube", "plank"].iter().find_map(|name| simulation.blocks().find(name)).unwrap();
     let nodes = simulation.blocks().nodes_of(block);
     let operator = &simulation.shape(block).operator;
     let (position, velocity) =

@@ -163,7 +163,6 @@ mod tests {
     }
 
     #[test]
-<<<<<<< HEAD
     fn an_end_that_is_past_is_refused_and_the_present_one_is_not() {
         let mut driver = fall("contact: Off,");
         driver.step(50).unwrap();
@@ -174,7 +173,9 @@ mod tests {
         assert_eq!(driver.steps(), 50);
         driver.step(10).unwrap();
         driver.change(&["title=\"beyond the end\"".into()]).unwrap();
-=======
+    }
+
+    #[test]
     fn parts_that_the_state_depends_on_cannot_change_between_steps() {
         let old = ndda_io::read::load_text("fall.ron", EXAMPLE.1, &[], None).unwrap().scene;
         for (what, value) in [
@@ -196,7 +197,6 @@ mod tests {
             (new.contact, new.blocks) = (old.contact.clone(), old.blocks.clone());
             assert_eq!(fixed_part(&old, &new), Some(what));
         }
->>>>>>> 99680ae2 (Refuse changes of bolts, quiet faces, ties, blasts and stages)
     }
 
     #[test]
