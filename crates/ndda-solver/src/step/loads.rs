@@ -280,7 +280,7 @@ mod tests {
         let one = Vec3::new(1.0, 2.0, 3.0);
         let mut loads = Loads::new(vec![one; 2], Vec::new(), Vec::new(), (vec![0, 1, 2], nowhere));
         loads.keep(&[Vec3::zeros(); 2]);
-        loads.leave_out(&[1..2], nowhere);
+        loads.leave_out(std::slice::from_ref(&(1..2)), nowhere);
         assert_eq!(loads.total(), [one, Vec3::zeros()]);
         loads.keep(&[-one, Vec3::zeros()]);
         assert_eq!(loads.total(), [Vec3::zeros(); 2]);
