@@ -18,7 +18,7 @@ mod settle;
 mod shapes;
 mod solid;
 pub(crate) mod stages;
-mod water;
+pub(crate) mod water;
 
 use std::path::Path;
 

@@ -4,6 +4,7 @@ pub mod admit;
 pub mod cost;
 pub mod creep;
 pub mod doubts;
+pub mod dry;
 mod ground_stress;
 pub mod held;
 mod idle;

@@ -9,7 +9,7 @@ use ndda_solver::Simulation;
 
 use crate::build::{self, Choices, Fault, RockReport, overlaps};
 use crate::choose;
-use crate::forecast::{admit, creep, held, lumped, rounding, slivers};
+use crate::forecast::{admit, creep, dry, held, lumped, rounding, slivers};
 use crate::judge::reference::Comparison;
 use crate::run::monitor::Monitor;
 
@@ -102,6 +102,7 @@ impl Model {
         let monitors = build::monitors(&loaded.scene, &simulation).map_err(located)?;
         loaded.warnings.extend(far);
         loaded.warnings.extend(held::warnings(&loaded, simulation.blocks()));
+        loaded.warnings.extend(dry::warnings(&loaded, simulation.blocks()));
         loaded.warnings.extend(slivers::warnings(&loaded, &rock));
         loaded.warnings.extend(lumped::warning(&loaded, &simulation));
         loaded.warnings.extend(creep::warning(&loaded));

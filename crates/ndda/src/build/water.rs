@@ -29,6 +29,16 @@ pub(super) fn add_water(scene: &Scene, blocks: &BlockSet, bodies: &mut [BodySetu
     }
 }
 
+/// Corners of the faces that are wet, in the coordinates of the scene; none where no face is.
+pub(crate) fn wet_places(blocks: &BlockSet, on: &Wet) -> Option<Vec<Vec3>> {
+    let parts = wet(blocks, on).ok()?;
+    let corners = parts.iter().flat_map(|(block, triangles)| {
+        let nodes = &blocks.rest_position[blocks.nodes_of(*block)];
+        triangles.iter().flatten().map(|node| nodes[*node as usize] + blocks.origin_m)
+    });
+    Some(corners.collect()).filter(|corners: &Vec<Vec3>| !corners.is_empty())
+}
+
 fn wet(blocks: &BlockSet, on: &Wet) -> Result<Vec<Faces>, String> {
     match on {
         Wet::Joint(pattern) => {

@@ -66,10 +66,18 @@ fn known(
     Ok(is_same.then_some((Start { moved: kept.moved, ..start }, kept.strength)))
 }
 
-/// Says what nothing holds.
+/// Says what nothing holds, and which water presses on nothing.
 fn warn(model: &Model, watch: &Watch) {
-    let not_held = model.loaded.warnings.iter().filter(|warning| warning.code == Code::NotHeld);
-    not_held.for_each(|warning| (watch.tell)(&format!("warning: {}", warning.message)));
+    for warning in &model.loaded.warnings {
+        match warning.code {
+            Code::NotHeld => (watch.tell)(&format!("warning: {}", warning.message)),
+            Code::NoEffect if warning.path.starts_with("water[") => {
+                let help = warning.help.as_deref().unwrap_or_default();
+                (watch.tell)(&format!("warning: {}: {}: {help}", warning.path, warning.message));
+            }
+            _ => {}
+        }
+    }
 }
 
 fn found(loaded: &LoadedScene, folder: &Path, watch: &Watch) -> Result<(Start, f64), SafetyError> {
