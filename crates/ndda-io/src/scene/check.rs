@@ -36,6 +36,8 @@ const MOST_NODES: f64 = 5e7;
 const HUGE: f64 = 1e50;
 /// Gravity beyond it is that of a centrifuge, or in another unit [m/s²].
 const MUCH_GRAVITY: f64 = 50.0;
+/// Level part of gravity over all of it up to which it is along z.
+const LEVEL: f64 = 1e-3;
 /// Digits of the numbers of blocks of rock, at least.
 const DIGITS: usize = 4;
 /// Speed of light [m/s].
@@ -67,6 +69,11 @@ pub(crate) fn problems(scene: &Scene, folder: Option<&Path>) -> Vec<Diagnostic> 
 /// Length of a vector.
 fn length(vector: &[f64; 3]) -> f64 {
     vector.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+/// Whether gravity points along z.
+fn points_up([x, y, z]: &[f64; 3]) -> bool {
+    *z > 0.0 && x.hypot(*y) <= LEVEL * z
 }
 
 struct Check<'a> {
@@ -116,6 +123,12 @@ impl Check<'_> {
             let message = format!("{size} m/s² is {:.0} times the gravity of the Earth", size / 9.81);
             let help = "the unit is m/s²: (0, 0, -9.81); leave it so for a model in a centrifuge";
             self.warn(Code::UnitSlip, "gravity_m_s2", message, help);
+        }
+        if points_up(&gravity) {
+            let message =
+                format!("gravity points up along z, at {size} m/s²: blocks that nothing holds fly up");
+            let help = format!("z points up: give (0, 0, {})", -gravity[2]);
+            self.warn(Code::DoesNotFit, "gravity_m_s2", message, help);
         }
     }
 
@@ -296,5 +309,30 @@ impl Check<'_> {
                 "reduce output.frames unless all are needed",
             );
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::read::load_text;
+
+    #[test]
+    fn gravity_that_points_up_is_warned_of_with_what_to_write() {
+        let told = |gravity: &str| {
+            let text = format!(
+                "(title: \"t\", time: (step_s: 1e-3, end_s: 1), gravity_m_s2: {gravity}, materials: [], contact: Off)"
+            );
+            let warnings = load_text("s.ron", &text, &[], None).unwrap().warnings;
+            let of_gravity = warnings.into_iter().filter(|warning| warning.path == "gravity_m_s2");
+            of_gravity
+                .map(|warning| format!("{}: {}", warning.message, warning.help.unwrap()))
+                .collect::<Vec<_>>()
+        };
+        for down in ["(0, 0, -9.81)", "(0, 0, 0)", "(0, 9.81, 0)", "(5, 0, 8)"] {
+            assert_eq!(told(down), Vec::<String>::new(), "{down}");
+        }
+        let up = told("(0, 0, 9.81)");
+        assert!(up.len() == 1 && up[0].starts_with("gravity points up along z"), "{up:?}");
+        assert!(up[0].ends_with("give (0, 0, -9.81)"), "{up:?}");
     }
 }

@@ -66,7 +66,11 @@ fn not_standing(answer: &Safety) -> Option<String> {
     };
     let way = match first.direction {
         [0.0, 0.0, 0.0] => String::new(),
-        direction => format!(" towards {}", trend_and_plunge(direction)),
+        // Straight up and down have no trend.
+        direction => match trend_and_plunge(direction) {
+            way if way.ends_with('°') => format!(" towards {way}"),
+            way => format!(" {way}"),
+        },
     };
     let goes = format!("`{}`{others} moved {}{way}", first.block, length(first.moved_m));
     let moves = format!("{goes} before the scene came to rest");
@@ -200,6 +204,9 @@ mod tests {
         let moved = Moved { block: "a".into(), moved_m: 3.158, direction: [1.0, 0.0, 0.0] };
         let alone = of(&answer(None, Some(1.0 / STRONGEST), vec![moved.clone()]), None, true);
         assert!(alone.len() == 1 && alone[0].starts_with("`a` moved 3.16 m towards 90.0°/0.0°"), "{alone:?}");
+        let up = Moved { block: "a".into(), moved_m: 12.6, direction: [0.0, 0.0, 1.0] };
+        let flown = of(&answer(None, Some(1.0 / STRONGEST), vec![up]), None, true);
+        assert!(flown[0].starts_with("`a` moved 12.6 m upward"), "{flown:?}");
         let beside = of(&answer(Some(1.2), Some(1.21), vec![moved]), None, false);
         assert!(
             beside.len() == 1 && beside[0].contains("32 times as strong: the factor is that of the others"),

@@ -79,16 +79,12 @@ impl Check<'_> {
     fn dips(&mut self) {
         let [x, y, z] = self.scene.gravity_m_s2;
         let (level, whole) = (x.hypot(y), x.hypot(y).hypot(z));
-        let is_tilted = whole > 0.0 && (z >= 0.0 || level > LEVEL * whole);
+        // Gravity that points up is told by itself.
+        let is_tilted = whole > 0.0 && level > LEVEL * whole;
         if is_tilted && self.scene.rock.iter().any(|rock| !rock.joints.is_empty()) {
             let tilt_deg = level.atan2(-z).to_degrees();
-            let tilted = if z > 0.0 && level <= LEVEL * whole {
-                "points up".into()
-            } else {
-                format!("is tilted by {tilt_deg:.1}° from −z")
-            };
             let message = format!(
-                "gravity {tilted}, but dips of joints are measured from the plane of x and y, not from the horizontal of this gravity"
+                "gravity is tilted by {tilt_deg:.1}° from −z, but dips of joints are measured from the plane of x and y, not from the horizontal of this gravity"
             );
             let help = "keep gravity along −z and turn the joints; or go on, if the dips are measured from the plane of x and y";
             self.warn(Code::DoesNotFit, "gravity_m_s2", message, help);
@@ -393,6 +389,6 @@ mod tests {
         let tilted = warned("(5, 0, -8.660254037844386)");
         assert!(tilted.len() == 1 && tilted[0].contains("tilted by 30.0°"), "{tilted:?}");
         let upward = warned("(0, 0, 9.81)");
-        assert!(upward.len() == 1 && upward[0].starts_with("gravity points up"), "{upward:?}");
+        assert!(upward.len() == 1 && upward[0].starts_with("gravity points up along z"), "{upward:?}");
     }
 }
