@@ -11,8 +11,8 @@
 //! M = N H L₀/(18 k_n w d³) < 4/27, N being its weight and w the length of the edge (`docs/theory/contact.md`).
 //!
 //! **Step.** The smallest of these, rounded down in the same way: a quarter of what the contact stability number allows (half of the step that `forecast::step` advises), a
-//! hundredth of the run, a tenth of the ramp of gravity and of the shortest time between rows of loads, a tenth of the height of a
-//! tetrahedron at the largest initial speed, and a twentieth of a radian of rotation.
+//! hundredth of the run, a tenth of the ramp of gravity and of the shortest time between rows of loads, the time between two rows of a record,
+//! what waves want (`waves/steps.rs`), a tenth of the height of a tetrahedron at the largest initial speed, and a twentieth of a radian of rotation.
 
 mod rounded;
 
@@ -28,6 +28,7 @@ use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
 use crate::build::{self, Fault, RockReport};
 use crate::forecast::held::NOTHING_MOVES;
 use crate::forecast::{admit, step};
+use crate::waves;
 use rounded::{metres, rounded_down, rounded_up};
 
 /// Part of the volume that is in blocks smaller than the size that counts.
@@ -366,6 +367,7 @@ fn step_of(
             format!("a quarter of the largest stable step of contact, at block `{block}`"),
         ));
     }
+    limits.extend(waves::steps::limits(&simulation));
     let least = limits.into_iter().reduce(|a, b| if b.0 < a.0 { b } else { a });
     let (step_s, reason) = least.expect("there is one limit at least");
     scene.time.step_s = rounded_down(step_s);

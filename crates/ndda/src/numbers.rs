@@ -45,6 +45,13 @@ fn three_figures(value: f64) -> String {
     format!("{value:.decimals$}")
 }
 
+/// The largest number of two figures that is not above a positive one, as `5.4e-3`.
+pub fn two_figures_down(value: f64) -> String {
+    let exponent = value.log10().floor() as i32;
+    let tenths = (10.0 * (1.0 + 1e-12) * value / 10f64.powi(exponent)).floor();
+    format!("{:.1}e{exponent}", 0.1 * tenths)
+}
+
 /// Trend, clockwise from the north (y), and plunge below the horizontal, negative upward, of a direction: `110.5°/37.9°`.
 pub fn trend_and_plunge([x, y, z]: [f64; 3]) -> String {
     let across = x.hypot(y);
@@ -108,6 +115,14 @@ pub fn direction(text: &str) -> Result<[f64; 3], String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn limits_are_rounded_down_to_two_figures() {
+        assert_eq!(
+            [5.498e-3, 5.4e-3, 1e-2, 9.99].map(two_figures_down),
+            ["5.4e-3", "5.4e-3", "1.0e-2", "9.9e0"]
+        );
+    }
 
     #[test]
     fn lengths_have_three_figures_and_the_unit_that_suits_them() {

@@ -5,6 +5,7 @@
 
 mod sources;
 mod spectrum;
+pub(crate) mod steps;
 
 use std::fmt;
 
@@ -13,6 +14,8 @@ use ndda_fem::{Motion, PlaneWave};
 use ndda_mesh::{BlockId, Vec3};
 use ndda_solver::{BodyKind, Simulation};
 use sources::{Source, Way};
+
+use crate::numbers::two_figures_down;
 
 /// Longest element along the way over the wavelength: ten nodes a wavelength.
 const MOST_ELEMENT: f64 = 0.1;
@@ -37,11 +40,13 @@ pub(crate) fn findings(simulation: &Simulation) -> Vec<Finding> {
     let highest_hz = sources.iter().map(|source| source.hz).fold(0.0, f64::max);
     let Some(coarsest) = coarsest(simulation, &sources) else { return Vec::new() };
     let step = highest_hz * simulation.step_s();
+    // A step that quiet faces do not bear would be no cure.
+    let longest_s = steps::for_quiet_faces(simulation).unwrap_or(f64::INFINITY).min(MOST_STEP / highest_hz);
     let too_long = format!(
-        "the time step is too long for the waves, with {:.1} steps per period instead of {:.0} (95 % of the energy is below {highest_hz:.3} Hz): take a step_s of {:.1e} or less",
+        "the time step is too long for the waves, with {:.1} steps per period instead of {:.0} (95 % of the energy is below {highest_hz:.3} Hz): take a step_s of {} or less",
         1.0 / step,
         1.0 / MOST_STEP,
-        MOST_STEP / highest_hz
+        two_figures_down(longest_s)
     );
     let (value, reason) = (coarsest.part(), coarsest.to_string());
     vec![

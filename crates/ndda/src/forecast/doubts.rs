@@ -37,6 +37,8 @@ pub fn doubts(
     let mut doubts: Vec<String> = unstable.into_iter().collect();
     let coarse = waves::findings(simulation).into_iter().filter(|found| found.value > found.limit);
     doubts.extend(coarse.map(|found| found.reason));
+    let let_in = waves::steps::through_quiet_faces(simulation).filter(|found| found.value > found.limit);
+    doubts.extend(let_in.map(|found| found.reason));
     doubts.extend(BoltReports::new(simulation).doubts(|name| build::bolts::entry(scene, name)));
     doubts.extend(idle::findings(scene, simulation.blocks(), folder));
     doubts.extend(points::findings(scene, simulation.blocks()));

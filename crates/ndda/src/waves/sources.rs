@@ -93,7 +93,7 @@ fn shaken(simulation: &Simulation) -> Vec<Source> {
     known.into_iter().filter_map(source).collect()
 }
 
-fn add_records<'a>(motion: &'a Motion, records: &mut Vec<&'a Motion>) {
+pub(super) fn add_records<'a>(motion: &'a Motion, records: &mut Vec<&'a Motion>) {
     match motion {
         Motion::Rows(_) => {}
         Motion::Record(_) => records.push(motion),
