@@ -29,7 +29,8 @@ use crate::build::{self, Fault, RockReport};
 use crate::forecast::held::NOTHING_MOVES;
 use crate::forecast::{admit, step};
 use crate::waves;
-use rounded::{metres, rounded_down, rounded_up};
+pub(crate) use rounded::rounded_up;
+use rounded::{metres, rounded_down};
 
 /// Part of the volume that is in blocks smaller than the size that counts.
 const SMALL: f64 = 0.05;

@@ -5,6 +5,7 @@
 //! smallest at which they fail are the answer: a bracket from runs, and no limit equilibrium (`search.rs`).
 
 mod changes;
+mod edges;
 mod failing;
 mod film;
 mod free_blocks;

@@ -15,7 +15,7 @@ pub(super) fn rounded_down(value: f64) -> f64 {
 }
 
 /// The smallest of 1, 2 and 5 times a power of ten that is not below a value.
-pub(super) fn rounded_up(value: f64) -> f64 {
+pub(crate) fn rounded_up(value: f64) -> f64 {
     let below = rounded_down(value);
     if below >= value * (1.0 - 1e-12) { below } else { rounded_down(2.6 * below) }
 }

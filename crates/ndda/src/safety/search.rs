@@ -156,7 +156,7 @@ impl<'a> Search<'a> {
             false if self.by.changes_loads() => self.mechanism(&self.march(before_s)?)?,
             false => self.mechanism(&self.bisect(before_s)?)?,
         };
-        let leaning = mechanism.as_ref().and_then(|how: &Mechanism| self.leaning(how));
+        let leaning = mechanism.as_ref().and_then(|how: &Mechanism| self.leaning(how, &moving));
         let (may_push, repeated) = (self.may_push(), self.repeated.load(Ordering::Relaxed));
         let (none_stands, as_drawn, stretches) = (self.none_stands(), self.as_drawn(), self.stretches());
         let mut answer = self.answer.into_inner().expect("no trial panics");

@@ -1,11 +1,12 @@
 //! How blocks fail at the upper end of the bracket.
 
+use ndda_io::scene::Contact;
 use ndda_solver::Snapshot;
 
 use super::Search;
 use crate::Model;
 use crate::lean;
-use crate::safety::{Kind, Mechanism, MovingBlock, SafetyError, changes, film, mechanism, opened};
+use crate::safety::{Kind, Mechanism, MovingBlock, SafetyError, changes, edges, film, mechanism, opened};
 
 /// What blocks do that fail.
 type Found = (Option<Mechanism>, Vec<MovingBlock>);
@@ -29,13 +30,29 @@ impl Search<'_> {
         filmed.and(found)
     }
 
-    /// That blocks topple before a rigid edge would let them, in words, judged at the lower end of the bracket.
-    pub(super) fn leaning(&self, how: &Mechanism) -> Option<String> {
-        let lower = self.answer.lock().expect("no trial panics").factor_of_safety.lower;
-        let factor = lower.filter(|_| how.kind == Kind::Toppling)?;
-        let model = self.model(factor, &self.start.snapshot).ok()?;
-        let lean = lean::worst(&model.loaded.scene, &model.simulation)?;
-        Some(format!("blocks topple sooner than on a rigid edge, and the factor is too small: {lean}"))
+    /// That blocks topple before rigid edges would let them, in words.
+    pub(super) fn leaning(&self, how: &Mechanism, moving: &[MovingBlock]) -> Option<String> {
+        let bracket = self.answer.lock().expect("no trial panics").factor_of_safety;
+        let (lower, upper) = bracket.lower.zip(bracket.upper).filter(|_| how.kind == Kind::Toppling)?;
+        let lean = |factor: f64| {
+            let model = self.model(factor, &self.start.snapshot).ok()?;
+            Some((lean::worst(&model.loaded.scene, &model.simulation), model))
+        };
+        let (found, model) = lean(lower)?;
+        let Some(Contact::Potential { penalty_pa, .. }) = &model.loaded.scene.contact else { return None };
+        let Some(found) = found else {
+            let topple = moving.iter().filter(|block| block.kind == Kind::Toppling).count();
+            return (topple > 1).then(|| edges::several(topple, *penalty_pa));
+        };
+        let next = lean(lower * (1.0 + edges::LITTLE)).and_then(|(next, _)| next);
+        let same = next.filter(|next| next.block == found.block);
+        let rigid = same.and_then(|next| edges::rigid(lower, found.inside_m, next.inside_m));
+        match rigid {
+            Some(rigid) => edges::one(&found.block, (lower, upper, rigid), self.plan.error, *penalty_pa),
+            None => Some(format!(
+                "blocks topple sooner than on a rigid edge, and the factor is too small: {found}"
+            )),
+        }
     }
 
     fn found(&self, factor: f64, from: &Snapshot) -> Result<Found, SafetyError> {
