@@ -39,7 +39,9 @@ fn strength(friction: &scene::Friction) -> Option<Box<dyn FrictionLaw>> {
         (Some(shear), Some(residual)) => {
             let (peak, after) = ((friction_deg, cohesion_pa), (residual.friction_deg, residual.cohesion_pa));
             let law = SofteningCoulomb::new(shear, peak, after, residual.over_m);
-            Box::new(law.with_tension(tension_pa, residual.tension_pa).that_opens(residual.opening_m))
+            // Without a tension to open at, a joint opens freely.
+            let opens_m = if residual.tension_pa > 0.0 { residual.opening_m } else { 0.0 };
+            Box::new(law.with_tension(tension_pa, residual.tension_pa).that_opens(opens_m))
         }
         (Some(shear), None) if cohesion_pa > 0.0 || tension_pa > 0.0 => {
             Box::new(MohrCoulomb::new(friction_deg, shear, cohesion_pa, tension_pa))

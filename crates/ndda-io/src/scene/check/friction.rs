@@ -115,9 +115,12 @@ impl Check<'_> {
         if !(opening_m >= 0.0 && opening_m.is_finite()) {
             let message = format!("{opening_m} m: must be zero or positive");
             self.error(field("opening_m"), message, "0 for a joint that is broken where it opens");
-        } else if opening_m > 0.0 && tension_pa <= 0.0 {
-            let help = "give residual.tension_pa, the tension at which it opens";
-            self.misfit(field("opening_m"), "a joint without tensile strength opens freely", help);
+        } else if opening_m > 0.0 && tension_pa == 0.0 {
+            let message = format!(
+                "{opening_m} m has no effect: without a residual tensile strength a joint opens freely"
+            );
+            let help = "leave out opening_m, or give residual.tension_pa, the tension at which it opens, and as much tension_pa or more";
+            self.warn(Code::NoEffect, field("opening_m"), message, help);
         }
         if peak.shear_penalty_pa_m.is_none() {
             let help = "give shear_penalty_pa_m, the stiffness of the joint before it slips";
@@ -267,5 +270,39 @@ impl Check<'_> {
             let help = "give contact.memory: Body";
             self.misfit(path.to_string(), "a joint that has opened would close at the next element", help);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::read::load_text;
+
+    #[test]
+    fn an_opening_of_a_joint_without_tensile_strength_is_warned_of_and_does_not_stop() {
+        let told = |friction: &str| {
+            let text = format!(
+                "(title: \"t\", time: (step_s: 1e-3, end_s: 1),
+                  materials: [(name: \"rock\", density_kg_m3: 2700, young_pa: 1e10, poisson: 0.25)],
+                  blocks: [(name: \"a\", material: \"rock\", shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)))],
+                  contact: Potential(penalty_pa: 1e8, friction: (friction_deg: 30, shear_penalty_pa_m: 1e9, {friction})))"
+            );
+            let warnings = load_text("s.ron", &text, &[], None).unwrap().warnings;
+            warnings
+                .into_iter()
+                .map(|warning| format!("{}: {}", warning.path, warning.message))
+                .collect::<Vec<_>>()
+        };
+        let kept = |strength_pa: &str| {
+            told(&format!(
+                "cohesion_pa: {strength_pa}, tension_pa: {strength_pa}, residual: (friction_deg: 30, cohesion_pa: {strength_pa}, tension_pa: {strength_pa}, opening_m: 0.1)"
+            ))
+        };
+        assert_eq!(kept("1e5"), Vec::<String>::new());
+        let none = kept("0");
+        assert!(
+            none.len() == 1
+                && none[0].starts_with("contact.friction.residual.opening_m: 0.1 m has no effect"),
+            "{none:?}"
+        );
     }
 }
