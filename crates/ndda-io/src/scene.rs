@@ -37,7 +37,7 @@ mod shaking;
 mod shape;
 mod stage;
 pub mod study;
-mod suggest;
+pub mod suggest;
 mod support;
 mod time;
 mod units;

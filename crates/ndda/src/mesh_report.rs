@@ -7,7 +7,7 @@ use ndda_io::scene::Scene;
 use ndda_mesh::quality::{Histogram, QualityReport, quality};
 use ndda_mesh::stats::stats;
 use ndda_mesh::validate::problems;
-use ndda_mesh::{BlockMesh, BlockSet, MeshError};
+use ndda_mesh::{BlockMesh, BlockSet, MeshError, MeshProblem};
 use serde::Serialize;
 
 use crate::build::RockReport;
@@ -22,8 +22,18 @@ const MOST_BARS: i32 = 24;
 pub fn refusal(input: &Path, error: &MeshError) -> String {
     let line = |(block, problem): &(String, _)| format!("\n  {block}: {problem}");
     let lines: String = error.problems.iter().map(line).collect();
-    let cure = "\n  --fix orient turns inverted tetrahedra round, --fix merge joins coincident nodes";
-    format!("{} is not fit to run:{lines}{cure}", input.display())
+    format!("{} is not fit to run:{lines}{}", input.display(), fixes(error))
+}
+
+/// What `--fix` can do about defects of blocks, in a line; nothing about others.
+fn fixes(error: &MeshError) -> String {
+    let has = |is: fn(&MeshProblem) -> bool| error.problems.iter().any(|(_, problem)| is(problem));
+    let orient = has(|problem| matches!(problem, MeshProblem::Inverted(_)));
+    let merge = has(|problem| matches!(problem, MeshProblem::Coincident { .. }));
+    let orient = orient.then_some("--fix orient turns inverted tetrahedra round");
+    let merge = merge.then_some("--fix merge joins coincident nodes");
+    let words: Vec<&str> = orient.into_iter().chain(merge).collect();
+    if words.is_empty() { String::new() } else { format!("\n  {}", words.join(", ")) }
 }
 
 /// Counts, sizes and quality of blocks.
@@ -140,5 +150,25 @@ impl fmt::Display for MeshReport {
         size.volume_m3.show(f, "blocks by volume [m³]")?;
         write!(f, "{quality}")?;
         self.steps.iter().try_for_each(|step| writeln!(f, "{step}"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ndda_mesh::validate::Found;
+
+    #[test]
+    fn only_defects_that_fix_can_mend_are_told_of_it() {
+        let told = |problem: MeshProblem| {
+            refusal(Path::new("a.msh"), &MeshError { problems: vec![("a".into(), problem)] })
+        };
+        let one = || [(6, -1.0)].into_iter().collect::<Found<_>>();
+        assert!(!told(MeshProblem::Flat(one())).contains("--fix"));
+        let inverted = told(MeshProblem::Inverted(one()));
+        assert!(inverted.contains("--fix orient") && !inverted.contains("merge"), "{inverted}");
+        let pairs = [(0, 1)].into_iter().collect();
+        let twice = told(MeshProblem::Coincident { pairs, tolerance_m: 1e-9 });
+        assert!(twice.contains("--fix merge") && !twice.contains("orient"), "{twice}");
     }
 }

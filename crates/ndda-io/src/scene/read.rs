@@ -84,9 +84,18 @@ impl LoadedScene {
 
     /// An error about the value at `path`, with its place in the text.
     pub fn diagnose(&self, path: &str, message: String) -> Diagnostic {
-        let help = match &self.scene.rockfall {
-            Some(_) => "`ndda rockfall` lets its boulders fall, and draws where they go",
-            None => "`ndda mesh` measures and draws the blocks as they are placed",
+        let is_of_places = is_of_places(path, &message);
+        let (message, cure) = match split_cure(&message) {
+            Some((problem, cure)) if !is_of_places => (problem.to_string(), Some(cure.to_string())),
+            _ => (message, None),
+        };
+        let help = match (&self.scene.rockfall, cure) {
+            (_, Some(cure)) => cure,
+            (Some(_), None) => "`ndda rockfall` lets its boulders fall, and draws where they go".to_string(),
+            (None, None) if is_of_places => {
+                "`ndda mesh` measures and draws the blocks as they are placed".to_string()
+            }
+            (None, None) => "docs/reference/scene.md says what this field is for".to_string(),
         };
         self.diagnose_as(Code::CannotBuild, path, message).with_help(help)
     }
@@ -101,6 +110,35 @@ impl LoadedScene {
         SceneErrors { file: self.file.clone(), text: self.written.clone(), diagnostics }
     }
 }
+
+/// Whether a problem is one of shapes, or of places on blocks, that a picture of them shows.
+fn is_of_places(path: &str, message: &str) -> bool {
+    let field = path.rsplit('.').next().unwrap_or_default();
+    let is_shape = path.starts_with("rock[") || path.starts_with("blocks[") && field == "shape";
+    let is_place = field == "on" || path.starts_with("monitors[") && field == "at";
+    (is_shape || is_place) && !message.contains("did you mean")
+}
+
+/// The cure at the end of a message, and what is before it.
+fn split_cure(message: &str) -> Option<(&str, &str)> {
+    let (problem, cure) = message.rsplit_once(": ")?;
+    CURES.iter().any(|begins| cure.starts_with(begins)).then_some((problem, cure))
+}
+
+/// How cures begin.
+const CURES: [&str; 11] = [
+    "did you mean ",
+    "give ",
+    "make ",
+    "use ",
+    "take ",
+    "move ",
+    "leave ",
+    "hold ",
+    "add ",
+    "correct ",
+    "write ",
+];
 
 /// Byte of a text that a byte of the text with something inserted comes from.
 fn before(short: &str, long: &str, at: usize) -> usize {
@@ -208,6 +246,25 @@ fn with_mistakes_of_values(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_picture_of_blocks_is_advised_where_it_shows_what_is_wrong() {
+        let text = "(title: \"t\", time: (step_s: 1e-3, end_s: 1),
+  materials: [(name: \"rock\", density_kg_m3: 2700, young_pa: 2e10, poisson: 0.2)],
+  blocks: [(name: \"a\", material: \"rock\", shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)))])";
+        let loaded = load_text("s.ron", text, &[], None).unwrap();
+        let helps = |path: &str, message: &str| {
+            loaded.diagnose(path, message.into()).help.is_some_and(|help| help.starts_with("`ndda mesh`"))
+        };
+        assert!(helps("blocks[0].shape", "is open") && helps("supports[0].on", "no node is in this region"));
+        assert!(helps("monitors[0].at", "is outside") && helps("rock[0].removed", "no block is left"));
+        for path in ["supports[0]", "forces[0].at_m", "bolts[0].at", "quiet[0].incident[0]", "contact"] {
+            assert!(!helps(path, "is wrong"), "{path}");
+        }
+        let meant = loaded.diagnose("supports[0].on", "there is no set `zmin`: did you mean `z_min`?".into());
+        assert_eq!(meant.message, "there is no set `zmin`");
+        assert_eq!(meant.help.unwrap(), "did you mean `z_min`?");
+    }
 
     #[test]
     fn messages_quote_the_text_as_it_is_written_after_values_have_been_chosen() {

@@ -58,9 +58,40 @@ fn nearest_node(blocks: &BlockSet, block: BlockId, place: &Vec3) -> Result<u32, 
     let nodes = &blocks.rest_position[blocks.nodes_of(block)];
     let bounds = Aabb::around(nodes);
     if !bounds.inflated(0.1 * bounds.diagonal()).touches(&Aabb { min: *place, max: *place }) {
-        return Err(format!("this point is not on block `{}`", blocks.names[block.index()]));
+        let [min, max] =
+            [bounds.min, bounds.max].map(|x| (x + blocks.origin_m).map(|x| (1e6 * x).round() / 1e6));
+        return Err(format!(
+            "this point is not on block `{}`, which lies from ({}, {}, {}) to ({}, {}, {}): give a point of it, or leave at_m out for a force through its mass centre",
+            blocks.names[block.index()],
+            min.x,
+            min.y,
+            min.z,
+            max.x,
+            max.y,
+            max.z
+        ));
     }
     let distance = |i: usize| (nodes[i] - place).norm_squared();
     let nearest = (0..nodes.len()).min_by(|&i, &j| distance(i).total_cmp(&distance(j)));
     Ok(nearest.ok_or("the block has no nodes")? as u32)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::Model;
+
+    #[test]
+    fn a_force_far_off_its_block_is_refused_with_the_extent_of_the_block() {
+        let text = "(title: \"pushed\", time: (step_s: 1e-4, end_s: 1e-3),
+            materials: [(name: \"rock\", density_kg_m3: 2600, young_pa: 20e9, poisson: 0.25)],
+            blocks: [(name: \"a\", material: \"rock\", at_m: (2, 0, 0), shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)))],
+            forces: [(block: \"a\", at_m: (9, 0, 0), force_n: (1, 0, 0))])";
+        let Err(refused) = Model::from_text(text) else { panic!("the force is off the block") };
+        let words = refused.to_string();
+        assert!(
+            words.contains("lies from (2, 0, 0) to (3, 1, 1)") && words.contains("give a point of it"),
+            "{words}"
+        );
+        assert!(!words.contains("ndda mesh"), "{words}");
+    }
 }

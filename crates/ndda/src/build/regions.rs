@@ -2,6 +2,7 @@
 
 use std::collections::HashSet;
 
+use ndda_io::scene::suggest::nearest;
 use ndda_io::scene::{self, Region};
 use ndda_mesh::geometry::Aabb;
 use ndda_mesh::{BlockId, BlockSet};
@@ -43,8 +44,11 @@ pub(super) fn region_nodes(blocks: &BlockSet, block: BlockId, region: &Region) -
         Region::Set(set) => {
             let sets = || blocks.node_sets_of(block);
             let (_, found) = sets().find(|(known, _)| known == set).ok_or_else(|| {
-                let known = sets().map(|(known, _)| known).collect::<Vec<_>>().join(", ");
-                format!("block `{name}` has no set `{set}`; it has {known}")
+                let known: Vec<&str> = sets().map(|(known, _)| known).collect();
+                match nearest(set, &known) {
+                    Some(meant) => format!("block `{name}` has no set `{set}`: did you mean `{meant}`?"),
+                    None => format!("block `{name}` has no set `{set}`; it has {}", known.join(", ")),
+                }
             })?;
             found.iter().map(|n| n.0 - range.start as u32).collect()
         }
@@ -117,4 +121,26 @@ pub(super) fn loaded_triangles(
         ));
     }
     Ok(triangles)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::Model;
+
+    #[test]
+    fn a_set_that_is_misspelt_is_told_with_the_one_that_was_meant() {
+        let told = |set: &str| {
+            let text = format!(
+                "(title: \"held\", time: (step_s: 1e-4, end_s: 1e-3),
+                materials: [(name: \"rock\", density_kg_m3: 2600, young_pa: 20e9, poisson: 0.25)],
+                blocks: [(name: \"a\", material: \"rock\", shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)))],
+                supports: [(block: \"a\", on: Set(\"{set}\"), hold: Fixed)])"
+            );
+            Model::from_text(&text).err().expect("there is no such set").to_string()
+        };
+        let near = told("zmin");
+        assert!(near.contains("has no set `zmin`") && near.contains("did you mean `z_min`?"), "{near}");
+        assert!(!near.contains("ndda mesh"), "{near}");
+        assert!(told("lid").contains("it has x_max, x_min"), "{}", told("lid"));
+    }
 }

@@ -57,14 +57,16 @@ pub fn doubts(
             "no blocks touch at the start, so they fall while the scene settles: move them together".into(),
         );
     }
-    doubts.extend(lean::worst(scene, simulation).map(|lean| lean.to_string()));
+    let depth = depth(scene, simulation).map(|(_, words)| words);
+    let lean = lean::worst(scene, simulation);
+    // Of two penalties that are too small only the larger one is a cure.
+    let enough_pa = choose::resting(scene, simulation.blocks()).map_or(0.0, |resting| resting.penalty_pa);
+    let leans_more = lean.as_ref().is_some_and(|lean| lean.penalty_pa > enough_pa);
+    doubts.extend(lean.filter(|_| leans_more || depth.is_none()).map(|lean| lean.to_string()));
     doubts.extend(rocking.filter(|rocking| rocking.is_doubtful()).map(Rocking::to_string));
     // The depth of contact at rest says more than the ratio of two stiffnesses.
-    doubts.extend(
-        depth(scene, simulation)
-            .map(|(_, words)| words)
-            .or_else(|| penalty(scene, simulation, *penalty_pa, potential)),
-    );
+    let depth = depth.or_else(|| penalty(scene, simulation, *penalty_pa, potential));
+    doubts.extend(depth.filter(|_| !leans_more));
     doubts
 }
 
@@ -143,4 +145,30 @@ fn is_soft_at_edges(scene: &Scene, simulation: &Simulation, other_pa: f64) -> bo
     }
     lean::worst(&softer, simulation).is_some()
         || rocking::worst(&softer, simulation).is_some_and(|rocking| rocking.is_doubtful())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Model;
+
+    #[test]
+    fn of_two_penalties_that_are_too_small_only_the_larger_cure_is_named() {
+        let told = |penalty_pa: &str| {
+            let text = format!(
+                "(title: \"column\", time: (step_s: 1e-3, end_s: 1), gravity_m_s2: (1.5, 0, -9.81),
+                 materials: [(name: \"rock\", young_pa: 2e10, poisson: 0.25, density_kg_m3: 2500)],
+                 blocks: [(name: \"floor\", material: \"rock\", body: Fixed, shape: Box(size_m: (4, 3, 1), cells: (1, 1, 1)), at_m: (-2, -1, -1)),
+                          (name: \"column\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 4), cells: (1, 1, 1)))],
+                 contact: Potential(penalty_pa: {penalty_pa}, potential: Smooth(reference_m: 1), friction: (friction_deg: 60)))"
+            );
+            let model = Model::from_text(&text).unwrap();
+            let (scene, simulation) = (&model.loaded.scene, &model.simulation);
+            let all = doubts(scene, simulation, None, None, Path::new("."));
+            let cures = all.into_iter().filter(|doubt| doubt.contains("penalty_pa")).collect::<Vec<_>>();
+            (lean::worst(scene, simulation).is_some(), depth(scene, simulation).is_some(), cures)
+        };
+        let (leans, is_deep, cures) = told("1");
+        assert!(leans && is_deep && cures.len() == 1, "{leans} {is_deep} {cures:?}");
+    }
 }

@@ -46,7 +46,15 @@ impl Check<'_> {
     }
 
     fn wet_joint(&mut self, path: String, name: &str) {
-        self.known_joint(path, name);
+        match &self.joints {
+            Some(joints) if joints.is_empty() => {
+                let message =
+                    format!("there is no joint `{name}`, since the scene has no rock that joints cut");
+                let help = "name the faces of a block: on: Part(block: \"…\", region: Set(\"z_min\"))";
+                self.report(Code::UnknownName, path, message, help);
+            }
+            _ => self.known_joint(path, name),
+        }
     }
 
     fn pressure(&mut self, path: &str, pressure: &Pressure) {
@@ -168,6 +176,15 @@ mod tests {
             let found = warned(&format!(", factor: [{rows}]"));
             assert_eq!(found, is_ahead.then_some("grows sooner than gravity"), "{rows}");
         }
+    }
+
+    #[test]
+    fn water_on_a_joint_of_a_scene_without_rock_is_told_how_to_name_faces() {
+        let water =
+            "water: [(on: Joint(\"crack\"), pressure: Level(at_m: (0, 0, 1)))],\n    contact: Potential(";
+        let errors = load_text("s.ron", &SCENE.replacen("contact: Potential(", water, 1), &[], None);
+        let errors = errors.unwrap_err().to_string();
+        assert!(errors.contains("no rock that joints cut") && errors.contains("on: Part(block:"), "{errors}");
     }
 
     #[test]
