@@ -50,6 +50,14 @@ pub(crate) fn fault_of_header(header: &StringRecord) -> Option<String> {
     Some(format!("its first line names the column `{name}` twice: leave one out"))
 }
 
+/// What to do about times in another unit, or under another name than that of their column.
+pub(crate) fn time_cure(header: &StringRecord, column: &str) -> String {
+    let named = header.iter().find(|name| name.to_ascii_lowercase().starts_with("time"));
+    named.map_or(String::new(), |name| {
+        format!(": give times in seconds in a column `{column}` in place of `{name}`")
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -21,6 +21,9 @@ const MOST_HEIGHTS: u64 = 1 << 24;
 /// The value that says "no height" where the header gives none.
 const NO_DATA: f64 = -9999.0;
 
+/// What is expected in the place of a decimal comma.
+const POINT: &str = "a number whose decimals come after a point, as 2.5";
+
 /// Heights of terrain on a regular grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TerrainGrid {
@@ -95,7 +98,10 @@ impl Header {
             let mut rest = line;
             let key = rest.word().unwrap_or_default();
             if parse::<f64>(key).is_some() {
-                return Ok((header, line));
+                return header.without_decimal_commas(line);
+            }
+            if let Some(word) = decimal_comma(rest.text) {
+                return Err(Fault::unexpected(line.number, POINT, word));
             }
             match key.to_ascii_lowercase().as_slice() {
                 b"ncols" => header.columns = Some(extent(&mut rest)?),
@@ -114,6 +120,15 @@ impl Header {
                     return Err(Fault::unexpected(line.number, expected, key));
                 }
             }
+        }
+    }
+
+    /// The header with its first line of heights, in which commas are not those of decimals: then a row would have more words than columns.
+    fn without_decimal_commas<'a>(self, line: Line<'a>) -> Result<(Self, Line<'a>), Fault> {
+        let words = line.text.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).count();
+        match decimal_comma(line.text).filter(|_| self.columns == Some(words as u64)) {
+            Some(word) => Err(Fault::unexpected(line.number, POINT, word)),
+            None => Ok((self, line)),
         }
     }
 
@@ -158,6 +173,18 @@ impl Header {
     }
 }
 
+/// The first word between blanks that is a number with a comma before its decimals.
+fn decimal_comma(text: &[u8]) -> Option<&[u8]> {
+    let is_one = |word: &&[u8]| {
+        let Some(comma) = word.iter().position(|byte| *byte == b',') else { return false };
+        let (whole, decimals) = (word[..comma].trim_ascii_start(), &word[comma + 1..]);
+        let whole = whole.strip_prefix(b"-").unwrap_or(whole);
+        let is_digits = |part: &[u8]| !part.is_empty() && part.iter().all(u8::is_ascii_digit);
+        is_digits(whole) && is_digits(decimals)
+    };
+    text.split(u8::is_ascii_whitespace).find(is_one)
+}
+
 fn needed<T>(value: Option<T>, key: &'static str) -> Result<T, Fault> {
     value.ok_or_else(|| FileProblem::NoHeaderLine(key).into())
 }
@@ -183,6 +210,17 @@ mod tests {
 
     fn error(text: &str) -> String {
         grid(text.as_bytes()).unwrap_err().of(Path::new("a.asc")).to_string()
+    }
+
+    #[test]
+    fn decimal_commas_are_told_with_their_line() {
+        let of_size = error(&GRID.replacen("cellsize 2", "cellsize 2,0", 1));
+        assert!(of_size.contains('5') && of_size.contains("after a point, as 2.5, found `2,0`"), "{of_size}");
+        let of_heights = error(&GRID.replacen("4 5 -1", "4,5 -5,25 6", 1));
+        assert!(of_heights.contains('7') && of_heights.contains("found `4,5`"), "{of_heights}");
+        // Commas that separate values are none.
+        let separated = grid(GRID.replacen("4 5 -1", "4,5,-1", 1).as_bytes());
+        assert_eq!(separated.unwrap(), grid(GRID.as_bytes()).unwrap());
     }
 
     #[test]

@@ -42,14 +42,24 @@ pub enum RecordError {
         given: usize,
     },
     /// Values that are no record.
-    #[error("{}, row {row}: {reason}", file.display())]
-    Row {
+    #[error("{}: line {line} {reason}", file.display())]
+    Line {
         /// The file.
         file: PathBuf,
-        /// Row of data, the first being 1.
-        row: usize,
+        /// Line of the file, the first being 1.
+        line: u64,
         /// The problem.
         reason: &'static str,
+    },
+    /// Accelerations that no ground can follow.
+    #[error(
+        "{}: the ground would move faster than light from {time_s} s on: give accelerations in m/s², or a smaller factor", file.display()
+    )]
+    Speed {
+        /// The file.
+        file: PathBuf,
+        /// Time of the row that brings it so far [s].
+        time_s: f64,
     },
 }
 
@@ -124,7 +134,7 @@ impl Prepared {
     /// Holds the speed that the record times `factor` brings, acceleration being linear between rows, against that of light.
     ///
     /// # Errors
-    /// [`RecordError::Row`] of the first row that is beyond it.
+    /// [`RecordError::Speed`] of the first row that is beyond it.
     pub fn check_speed(&self, file: &Path, factor: f64) -> Result<(), RecordError> {
         check_speed(file, &self.rows, factor)
     }
@@ -132,13 +142,12 @@ impl Prepared {
 
 fn check_speed(file: &Path, rows: &[(f64, f64)], factor: f64) -> Result<(), RecordError> {
     let mut speed_m_s = 0.0;
-    for (row, pair) in (2..).zip(rows.windows(2)) {
+    for pair in rows.windows(2) {
         let [(from_s, a), (to_s, b)] = [pair[0], pair[1]];
         speed_m_s += factor * (0.5 * a + 0.5 * b) * (to_s - from_s);
         // NaN, of a sum of infinite ones, is beyond the limit, too.
         if speed_m_s.is_nan() || speed_m_s.abs() > LIGHT_M_S {
-            let reason = "brings the ground beyond the speed of light: give accelerations in m/s², or a smaller factor";
-            return Err(RecordError::Row { file: file.to_path_buf(), row, reason });
+            return Err(RecordError::Speed { file: file.to_path_buf(), time_s: to_s });
         }
     }
     Ok(())
@@ -261,31 +270,28 @@ fn csv(file: &Path, bytes: &[u8], column: &str, cure: &str) -> Result<Vec<(f64, 
     let place = |name: &str| {
         let known = header.iter().collect::<Vec<_>>().join(", ");
         let found = header.iter().position(|column| column == name);
-        let cure = if name == TIME { String::new() } else { format!(": {cure}") };
+        let cure = if name == TIME { csv_text::time_cure(&header, TIME) } else { format!(": {cure}") };
         found.ok_or_else(|| table(format!("there is no column `{name}`; the first line names {known}{cure}")))
     };
     let places = [place(TIME)?, place(column)?];
     let mut rows: Vec<(f64, f64)> = Vec::new();
-    let wrong = |row: usize, reason| RecordError::Row { file: file.to_path_buf(), row, reason };
     for record in reader.records() {
         let record = record.map_err(broken)?;
+        let line = record.position().map_or(0, csv::Position::line);
+        let wrong = |reason| RecordError::Line { file: file.to_path_buf(), line, reason };
         let [time_s, acceleration] = places.map(|i| record[i].parse::<f64>());
         let (Ok(time_s), Ok(acceleration_m_s2)) = (time_s, acceleration) else {
-            let line = record.position().map_or(0, csv::Position::line);
             return Err(table(format!("line {line} has no number in column `{TIME}` or `{column}`")));
         };
         if !(time_s.is_finite() && acceleration_m_s2.is_finite()) {
-            return Err(wrong(rows.len() + 1, "a value is not a number"));
+            return Err(wrong("has a value that is not a number"));
         }
         match rows.last() {
             None if time_s < 0.0 => {
-                return Err(wrong(1, "is before the start of the run: begin at 0 s or later"));
+                return Err(wrong("is before the start of the run: begin at 0 s or later"));
             }
             Some(last) if time_s <= last.0 => {
-                return Err(wrong(
-                    rows.len() + 1,
-                    "is not later than the row before: sort the rows by time_s",
-                ));
+                return Err(wrong("is not later than the line before: sort the rows by time_s"));
             }
             _ => rows.push((time_s, acceleration_m_s2)),
         }
@@ -352,13 +358,14 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_record_is_refused_with_its_row() {
+    fn what_is_no_record_is_refused_with_its_line() {
         for (text, word) in [
-            ("time_s,acceleration_m_s2\n0,1\n0,2\n", "row 2"),
-            ("time_s,acceleration_m_s2\n-1,1\n0,2\n", "row 1"),
+            ("time_s,acceleration_m_s2\n0,1\n0,2\n", "line 3 is not later"),
+            ("# from a logger\ntime_s,acceleration_m_s2\n-1,1\n0,2\n", "line 3 is before"),
+            ("time_ms,acceleration_m_s2\n0,1\n10,2\n", "give times in seconds in a column `time_s`"),
             ("time_s,acceleration_m_s2\n0,1\n", "one row of numbers"),
             ("", "is empty"),
-            ("time_s,acceleration_m_s2\n0,NaN\n1,1\n", "row 1"),
+            ("time_s,acceleration_m_s2\n0,NaN\n1,1\n", "line 2 has a value"),
             ("time_s,acceleration_m_s2\n0,x\n", "line"),
             ("t,a\n0,1\n1,1\n", "time_s"),
         ] {
@@ -369,7 +376,7 @@ mod tests {
     }
 
     #[test]
-    fn a_record_that_no_ground_can_follow_is_refused_with_its_row() {
+    fn a_record_that_no_ground_can_follow_is_refused_with_its_time() {
         let check = |rows: &[(f64, f64)], factor| {
             check_speed(Path::new("quake.csv"), rows, factor).map_err(|error| error.to_string())
         };
@@ -381,7 +388,7 @@ mod tests {
             ([(0.0, 0.0), (0.01, 0.0), (0.02, 1e308)], 1e308),
         ] {
             let message = check(&rows, factor).unwrap_err();
-            assert!(message.contains("quake.csv, row 3: brings the ground"), "{message}");
+            assert!(message.contains("quake.csv: the ground would move faster than light from"), "{message}");
         }
     }
 }

@@ -56,8 +56,10 @@ pub(super) fn explain(error: &SpannedError, plain: &Resolved, text: &str, tree: 
             at(Code::DuplicateField, format!("the field `{field}`{} is written twice", of(outer)))
                 .with_help("keep one of them")
         }
-        RonError::Eof => at(Code::Truncated, "the file ends before the scene does".into())
-            .with_help("a closing bracket is missing, or the file was cut off"),
+        code if *code == RonError::Eof || begins_at_end(code, text, start) => {
+            at(Code::Truncated, "the file ends before the scene does".into())
+                .with_help("a closing bracket is missing, or the file was cut off")
+        }
         RonError::InvalidValueForType { expected, found } => {
             let message = format!("expected {}, found {}", plain_words(expected), plain_words(found));
             at(Code::WrongType, message).with_help(REFERENCE)
@@ -89,6 +91,23 @@ pub(super) fn explain(error: &SpannedError, plain: &Resolved, text: &str, tree: 
             at(kind, message).with_help(help)
         }
     }
+}
+
+/// Whether a value is looked for at the end of a text.
+fn begins_at_end(error: &RonError, text: &str, at: usize) -> bool {
+    use RonError::*;
+    let is_of_value = matches!(
+        error,
+        ExpectedStructLike
+            | ExpectedNamedStructLike(_)
+            | ExpectedArray
+            | ExpectedString
+            | ExpectedFloat
+            | ExpectedInteger
+            | ExpectedBoolean
+            | ExpectedIdentifier
+    );
+    is_of_value && text[at..].trim().is_empty() && !text.trim().is_empty()
 }
 
 /// How a field is written that has fields of its own, and of which a number is given: the friction angle, the length of a step.

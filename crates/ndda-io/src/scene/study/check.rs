@@ -8,7 +8,7 @@ use crate::scene::code::Code;
 use crate::scene::diagnostic::Diagnostic;
 use crate::scene::locate::Node;
 use crate::scene::parse::parse_with;
-use crate::scene::{overrides, parameter_values, suggest};
+use crate::scene::{overrides, parameter_values, parameters, suggest};
 
 pub(super) fn default_curves(study: &Study) -> Vec<String> {
     let others = study.axes.iter().filter(|axis| !axis.varies("time.step_s"));
@@ -101,13 +101,23 @@ fn correlation_problems(study: &Study) -> Vec<Diagnostic> {
 /// Paths that lead nowhere in the scene, and fields that no scene has. What values mean is found when a case runs.
 pub(super) fn lost_paths(study: &Study, scene_text: &str) -> Vec<Diagnostic> {
     let refused = |text: &str, overrides: &[String]| match overrides::apply(text, overrides) {
-        Ok(text) => unknown_field(&text),
+        Ok(with) => unknown_field(&with).map(|d| match parameter(text, &d.path) {
+            Some(known) => d.with_help(format!("did you mean `{known}`?")),
+            None => d,
+        }),
         Err(found) => found.into_iter().next(),
     };
     let common = as_overrides(&study.set);
     let lost = |path: String, d: Diagnostic| {
-        let at = Diagnostic::error(Code::Override, path, format!("{}: {}", d.path, d.message), None);
-        Diagnostic { help: d.help, ..at }
+        // Nobody wrote the value that was tried here, nor --set.
+        let tried = d.path.strip_prefix("--set ").map(|set| set.split_once('=').unwrap_or((set, "")));
+        let (place, value) = tried.unwrap_or((d.path.as_str(), ""));
+        let help = d.help.map(|help| match tried {
+            Some(_) => help.replace("--set ", "").replace(&format!("={value}?"), "?"),
+            None => help,
+        });
+        let at = Diagnostic::error(Code::Override, path, format!("{place}: {}", d.message), None);
+        Diagnostic { help, ..at }
     };
     let text = match overrides::apply(scene_text, &common) {
         Ok(text) => text,
@@ -134,10 +144,44 @@ pub(super) fn lost_paths(study: &Study, scene_text: &str) -> Vec<Diagnostic> {
     found
 }
 
+/// Path of the parameter of a scene that has the name of a field.
+fn parameter(text: &str, field: &str) -> Option<String> {
+    let tree = Node::of(text);
+    let known = tree.child(text, parameters::FIELD).and_then(|all| all.child(text, field));
+    known.map(|_| format!("{}.{field}", parameters::FIELD))
+}
+
 /// The first field of a text that no scene has.
 fn unknown_field(text: &str) -> Option<Diagnostic> {
     let tree = Node::of(text);
     let (parameters, _) = parameter_values::read(text, &tree).ok()?;
     let found = parse_with::<Scene>(text, &tree, &parameters).err()?.found;
     found.into_iter().find(|d| d.code == Code::UnknownField)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SCENE: &str =
+        "(title: \"t\", parameters: (phi: 30), time: (step_s: 1e-3, end_s: 1), materials: [])";
+
+    /// What is said of `--vary` with a path and values.
+    fn told(vary: &str) -> String {
+        let axes = Axis::from_words(&[vary.to_string()]).unwrap();
+        let study = Study { axes, ..Study::of_scene("s.ron".into()) };
+        let found = lost_paths(&study, SCENE);
+        found.iter().map(|d| format!("{}; {}", d.message, d.help.as_deref().unwrap_or_default())).collect()
+    }
+
+    #[test]
+    fn parameters_that_are_varied_by_a_wrong_path_are_told_with_what_was_meant() {
+        assert_eq!(told("parameters.phi=30,40"), "");
+        for values in ["30,40", "Uniform(30, 40)"] {
+            let short = told(&format!("phi={values}"));
+            assert!(short.contains("did you mean `parameters.phi`?"), "{short}");
+            let wrong = told(&format!("parameters.phy={values}"));
+            assert_eq!(wrong, "parameters.phy: there is no parameter `phy`; did you mean `phi`?; ");
+        }
+    }
 }

@@ -46,6 +46,11 @@ impl Distribution {
         Some(read.and_then(|read| read.check().map(|()| read)))
     }
 
+    /// How the distribution that a text names is written.
+    pub(super) fn form_of(text: &str) -> Option<&'static str> {
+        FORMS.into_iter().find(|form| name_of(form) == name_of(text))
+    }
+
     /// Why a text that looks like a distribution is none: numbers in the brackets of a name that is no unit.
     pub(super) fn misspelt(text: &str) -> Option<String> {
         let (name, inside) = text.strip_suffix(')')?.split_once('(')?;

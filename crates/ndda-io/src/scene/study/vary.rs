@@ -38,7 +38,10 @@ fn axis(text: &str) -> Result<Axis, SceneErrors> {
         return Err(refuse("needs a path and values".into(), help));
     }
     if let Some(read) = Distribution::parse(values) {
-        let distribution = read.map_err(|reason| refuse(reason, help))?;
+        let distribution = read.map_err(|reason| {
+            let form = Distribution::form_of(values).unwrap_or_default();
+            refuse(reason, &format!("write --vary \"{path}={form}\", with numbers in place of the words"))
+        })?;
         return Ok(Axis::Random { path, distribution, name: None });
     }
     if let Some(reason) = Distribution::misspelt(values) {
@@ -85,6 +88,14 @@ mod tests {
     fn read(texts: &[&str]) -> Result<Vec<Axis>, String> {
         let texts: Vec<String> = texts.iter().map(|text| text.to_string()).collect();
         Axis::from_words(&texts).map_err(|errors| errors.render(false))
+    }
+
+    #[test]
+    fn a_distribution_with_wrong_numbers_is_told_how_it_is_written() {
+        let told = read(&["parameters.phi=Uniform(40,30)"]).unwrap_err();
+        assert!(told.contains("the least value comes first"), "{told}");
+        assert!(told.contains("--vary \"parameters.phi=Uniform(least, largest)\""), "{told}");
+        assert!(!told.contains("time.step_s"), "{told}");
     }
 
     #[test]
