@@ -27,7 +27,7 @@ pub struct Traction {
 pub struct Force {
     /// Name of the block, or of many as in a support; each takes the whole force.
     pub block: String,
-    /// The point [m], whose force the corners of its tetrahedron share (outside of the block, the nearest node takes it); of many blocks, those that have it take the force. Default: through the mass centre, shared among
+    /// The point [m], whose force the corners of its tetrahedron share (outside of the block, the nearest node takes it; farther than a tenth of the diagonal of the block's box from that box, it is refused); of many blocks, those that have it take the force. Default: through the mass centre, shared among
     /// all nodes by volume.
     #[serde(default)]
     pub at_m: Option<[f64; 3]>,
