@@ -8,7 +8,7 @@ mod verbs;
 
 use std::ffi::OsString;
 
-use clap::{CommandFactory, FromArgMatches};
+use clap::{CommandFactory, FromArgMatches, error::ContextKind};
 use ndda::forecast::memory as limits;
 
 use args::{Cli, Verb};
@@ -34,14 +34,14 @@ pub fn run_command(args: Vec<OsString>, program: Vec<OsString>) -> u8 {
     let parsed = command.try_get_matches_from(args).and_then(|found| Cli::from_arg_matches(&found));
     let Cli { memory, verb } = match parsed {
         Ok(cli) => cli,
-        Err(refused) => {
+        Err(mut refused) => {
+            // No option is meant as a value, and "use '-- --threads'" is no cure.
+            refused.remove(ContextKind::Suggested);
             let _ = refused.print();
             return u8::try_from(refused.exit_code()).unwrap_or(exit::USAGE);
         }
     };
-    if let Some(bytes) = memory {
-        limits::limit(bytes);
-    }
+    memory.into_iter().for_each(limits::limit);
     // Results of runs are in files; what others print is their result.
     let results_in_files = matches!(verb, Verb::Run(_) | Verb::Resume(_));
     let outcome = match verb {

@@ -95,6 +95,18 @@ fn options_that_would_have_no_effect_are_refused() {
 }
 
 #[test]
+fn an_option_that_a_command_does_not_have_is_not_advised_as_a_value() {
+    let folder = folder_with(&[("fall.ron", cubes("Rigid"))]);
+    for words in ["joint fall.ron --threads 2", "mesh fall.ron -o x"] {
+        let (code, text) = said(folder.path(), words);
+        assert!(code == 2 && text.contains("unexpected argument"), "{words}: {code} {text}");
+        assert!(!text.contains("as a value"), "{words}: {text}");
+    }
+    let (_, text) = said(folder.path(), "run fall.ron --thread 2");
+    assert!(text.contains("--threads"), "{text}");
+}
+
+#[test]
 fn a_picture_of_another_kind_is_bad_input_whichever_command_draws_it() {
     let folder = folder_with(&[
         ("joints.csv", "dip_deg,dip_direction_deg\n40,130\n".into()),

@@ -45,6 +45,13 @@ fn three_figures(value: f64) -> String {
     format!("{value:.decimals$}")
 }
 
+/// A number in the fewest figures that differ from it by rounding alone: `4e-4` for 3.9999999999999996e-4.
+pub fn in_fewest_figures(value: f64) -> String {
+    let is_same =
+        |text: &String| text.parse().is_ok_and(|read: f64| (read - value).abs() <= 1e-14 * value.abs());
+    (0..16).map(|after| format!("{value:.after$e}")).find(is_same).unwrap_or_else(|| format!("{value:e}"))
+}
+
 /// The largest number of two figures that is not above a positive one, as `5.4e-3`.
 pub fn two_figures_down(value: f64) -> String {
     let exponent = value.log10().floor() as i32;
@@ -117,7 +124,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn limits_are_rounded_down_to_two_figures() {
+    fn numbers_that_were_chosen_have_the_figures_that_they_need() {
+        for (value, text) in [
+            (3.9999999999999996e-4, "4e-4"),
+            (1.25e-5, "1.25e-5"),
+            (-3e9, "-3e9"),
+            (0.0, "0e0"),
+            (2.0 / 3.0, "6.6666666666667e-1"),
+        ] {
+            assert_eq!(in_fewest_figures(value), text);
+        }
         assert_eq!(
             [5.498e-3, 5.4e-3, 1e-2, 9.99].map(two_figures_down),
             ["5.4e-3", "5.4e-3", "1.0e-2", "9.9e0"]

@@ -136,8 +136,8 @@ pub fn parse_orientation(text: &str) -> Result<Orientation, String> {
         let (dip, direction): (f64, f64) = (dip.trim().parse().ok()?, direction.trim().parse().ok()?);
         ((0.0..=90.0).contains(&dip) && (-360.0..=360.0).contains(&direction)).then_some((dip, direction))
     });
-    let (dip_deg, dip_direction_deg) =
-        numbers.ok_or("write dip (0 to 90) and dip direction in degrees, as 65/150")?;
+    let (dip_deg, dip_direction_deg) = numbers
+        .ok_or("write dip (0 to 90) and dip direction (0 to 360, or -360 to 0) in degrees, as 65/150")?;
     Ok(Orientation { dip_deg, dip_direction_deg })
 }
 
@@ -236,7 +236,8 @@ mod tests {
     fn orientations_are_written_as_dip_and_dip_direction() {
         assert_eq!(parse_orientation("65/150"), Ok(Orientation { dip_deg: 65.0, dip_direction_deg: 150.0 }));
         for text in ["65", "91/0", "65/400", "a/b", "nan/0", "150,65", ""] {
-            assert!(parse_orientation(text).unwrap_err().contains("65/150"), "{text}");
+            let told = parse_orientation(text).unwrap_err();
+            assert!(told.contains("65/150") && told.contains("dip direction (0 to 360"), "{text}");
         }
     }
 

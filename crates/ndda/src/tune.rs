@@ -13,6 +13,7 @@ use crate::certify::error::CertifyError;
 use crate::certify::plan::Plan;
 use crate::certify::runs::{Ended, read};
 use crate::judge::reasons;
+use crate::numbers::in_fewest_figures;
 use crate::study::case::{Case, plain};
 use crate::study::error::StudyError;
 use crate::study::front::{Point, front};
@@ -46,7 +47,7 @@ pub enum TuneError {
     Run(#[from] CertifyError),
     /// Runs of ever shorter steps do not come together.
     #[error(
-        "no run is exact enough to judge others by, steps down to {step_s:e} s still differ by {error:.1e}: \
+        "no run is exact enough to judge others by, steps down to {step_s:.3e} s still differ by {error:.1e}: \
          allow a larger --error, raise --budget-s, or name quantities that converge with --of; `ndda certify` says whether \
          the motion is chaotic"
     )]
@@ -281,7 +282,7 @@ impl Runner<'_> {
 
     fn point(&self, tried: &Tried) -> TrialPoint {
         let step_s = self.plan.step_s(tried.setting.level as u32);
-        let mut set = vec![format!("time.step_s={step_s:e}")];
+        let mut set = vec![format!("time.step_s={}", in_fewest_figures(step_s))];
         set.extend(self.settings.set(&tried.setting));
         let (time_s, error, reason) = match &tried.outcome {
             Outcome::Done { time_s, error } => (Some(*time_s), Some(*error), None),

@@ -7,6 +7,7 @@ use ndda_solver::Simulation;
 use super::space::{Axis, Setting, Space};
 use crate::build;
 use crate::certify::plan::{STIFFER, finer};
+use crate::numbers::in_fewest_figures;
 
 /// The longest step that is tried is this times that of the scene.
 const LONGEST: u64 = 8;
@@ -85,7 +86,8 @@ impl Settings {
         }
         let (stiffer, refined) = (setting.at[PENALTY], setting.at[PENALTY + 1]);
         if let (Some(Contact::Potential { penalty_pa, .. }), true) = (&self.scene.contact, stiffer != 0) {
-            set.push(format!("contact.penalty_pa={:e}", penalty_pa * STIFFER.powi(stiffer)));
+            let penalty_pa = penalty_pa * STIFFER.powi(stiffer);
+            set.push(format!("contact.penalty_pa={}", in_fewest_figures(penalty_pa)));
         }
         if refined != 0 {
             set.extend(finer(&self.scene, refined));
