@@ -106,6 +106,7 @@ fn a_roof_wedge_falls_when_it_is_heavier_than_the_stress_across_its_joints_holds
             Run::new(Model::from_text(&scene(shear, parts)).unwrap()).finish(&mut []).unwrap().summary
         };
         let [stands, falls] = [run([0.9, 0.99]), run([0.99, 1.01])];
+        assert_eq!(stands.stages.len(), 3, "{:?}", stands.label.reasons);
         let moved_m = |k: usize| stands.stages[k].motion.farthest_m;
         // Pulled by P it gives way by P over the stiffness of its joints.
         let gives_m = |part: f64| part * capacity_n / (3.0 * FACE_M2 * stiffness_pa_m(shear));

@@ -103,13 +103,13 @@ fn a_checkpoint_of_an_older_format_is_refused_with_what_to_do() {
 }
 
 #[test]
-fn a_record_beyond_all_numbers_is_an_error_of_input_with_its_row() {
+fn a_record_beyond_all_numbers_is_an_error_of_input_with_its_time() {
     let place = place();
     let place = place.path();
-    for (row, value) in [(3, "1e308"), (3, "-1e300"), (3, "1e155")] {
+    for value in ["1e308", "-1e300", "1e155"] {
         let text = format!("time_s,acceleration_m_s2\n0,0\n0.02,1\n0.05,{value}\n");
         fs::write(place.join("quake.csv"), text).expect("a record");
-        let words = ["quake.csv", &format!("row {row}"), "speed of light"];
+        let words = ["quake.csv: the ground would move faster than light from 0.05 s on"];
         assert_says(&ndda(place, &["run", "scene.ron", "--out", "out"]), BAD_INPUT, &words);
     }
 }

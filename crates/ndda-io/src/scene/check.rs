@@ -320,7 +320,8 @@ mod tests {
     fn gravity_that_points_up_is_warned_of_with_what_to_write() {
         let told = |gravity: &str| {
             let text = format!(
-                "(title: \"t\", time: (step_s: 1e-3, end_s: 1), gravity_m_s2: {gravity}, materials: [], contact: Off)"
+                "(title: \"t\", time: (step_s: 1e-3, end_s: 1), gravity_m_s2: {gravity}, materials: [(name: \"rock\", density_kg_m3: 2700, young_pa: 1e10, poisson: 0.25)],
+                  blocks: [(name: \"a\", material: \"rock\", shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)))], contact: Off)"
             );
             let warnings = load_text("s.ron", &text, &[], None).unwrap().warnings;
             let of_gravity = warnings.into_iter().filter(|warning| warning.path == "gravity_m_s2");

@@ -65,10 +65,11 @@ impl Simulation {
         }
         let mut change_j = ExactSum::new();
         for block in self.problem.blocks.ids() {
+            let before = self.remembered_motion(block);
             change_j.add(self.damp_block(block, damping));
+            self.shift_remembered(block, before);
         }
         damping.change_j = change_j.value();
-        self.note_blow();
         Ok(report)
     }
 

@@ -293,8 +293,12 @@ impl Simulation {
 
     /// Stops all nodes.
     pub(super) fn stop_all(&mut self) {
-        self.state.velocity.fill(Vec3::zeros());
-        self.note_blow();
+        for block in self.problem.blocks.ids() {
+            let before = self.remembered_motion(block);
+            let nodes = self.problem.blocks.nodes_of(block);
+            self.state.velocity[nodes].fill(Vec3::zeros());
+            self.shift_remembered(block, before);
+        }
     }
 
     /// How far the centre of each block has gone [m], the farthest first.

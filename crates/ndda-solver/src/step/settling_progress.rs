@@ -32,8 +32,8 @@ pub enum Damping {
 pub(super) struct Progress {
     damper: Damper,
     pub(super) oscillation: Oscillation,
-    /// `load_j` in the course of a run; zero before it begins [J]. A scene in equilibrium hardly moves, so its speed is compared with the one
-    /// that loads alone would bring in a quarter of the slowest oscillation: about the largest speed of the same scene released without
+    /// `load_j` in the course of a run, a sixty-fourth of it before it begins [J]. A scene in equilibrium hardly moves, so its speed is compared with the one
+    /// that loads alone would bring in a quarter of the slowest oscillation, or with an eighth of it: about the largest speed of the same scene released without
     /// stress, whatever the step.
     moving_j: f64,
     /// Kinetic energy that loads alone would give all blocks but the fixed ones in a step [J].
@@ -59,7 +59,13 @@ impl Progress {
         let moves = |block: &BlockId| simulation.shape(*block).kind != BodyKind::Fixed;
         let loads_j = simulation.blocks().ids().filter(moves).map(|block| simulation.load_energy_j(block));
         let load_j = loads_j.collect::<ExactSum>().value();
-        Self { damper, oscillation: Oscillation::default(), moving_j: 0.0, load_j, highest_j: load_j }
+        Self {
+            damper,
+            oscillation: Oscillation::default(),
+            moving_j: 0.25 * load_j,
+            load_j,
+            highest_j: load_j,
+        }
     }
 
     /// The same in the course of a run.
