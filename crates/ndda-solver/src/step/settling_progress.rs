@@ -32,9 +32,9 @@ pub enum Damping {
 pub(super) struct Progress {
     damper: Damper,
     pub(super) oscillation: Oscillation,
-    /// `load_j` in the course of a run, a sixty-fourth of it before it begins [J]. A scene in equilibrium hardly moves, so its speed is compared with the one
-    /// that loads alone would bring in a quarter of the slowest oscillation, or with an eighth of it: about the largest speed of the same scene released without
-    /// stress, whatever the step.
+    /// `load_j` in the course of a run; before it begins a sixty-fourth of that, or none with adaptive damping, which is held to unbalanced forces [J]. A scene in
+    /// equilibrium hardly moves, so its speed is compared with the one that loads alone would bring in a quarter of the slowest oscillation, or with an eighth of it: the
+    /// former is about the largest speed of the same scene released without stress, whatever the step.
     moving_j: f64,
     /// Kinetic energy that loads alone would give all blocks but the fixed ones in a step [J].
     load_j: f64,
