@@ -59,13 +59,8 @@ impl Progress {
         let moves = |block: &BlockId| simulation.shape(*block).kind != BodyKind::Fixed;
         let loads_j = simulation.blocks().ids().filter(moves).map(|block| simulation.load_energy_j(block));
         let load_j = loads_j.collect::<ExactSum>().value();
-        Self {
-            damper,
-            oscillation: Oscillation::default(),
-            moving_j: 0.25 * load_j,
-            load_j,
-            highest_j: load_j,
-        }
+        let moving_j = if damping == Damping::Adaptive { 0.0 } else { load_j / 64.0 };
+        Self { damper, oscillation: Oscillation::default(), moving_j, load_j, highest_j: load_j }
     }
 
     /// The same in the course of a run.
