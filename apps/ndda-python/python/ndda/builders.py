@@ -1500,8 +1500,9 @@ class Force(Builder):
         Force [N].
     at_m : Sequence[float], optional
         The point [m], whose force the corners of its tetrahedron share (outside of the block, the nearest
-        node takes it); of many blocks, those that have it take the force. Default: through the mass centre,
-        shared among all nodes by volume.
+        node takes it; farther than a tenth of the diagonal of the block's box from that box, it is refused);
+        of many blocks, those that have it take the force. Default: through the mass centre, shared among all
+        nodes by volume.
     factor : list[FactorRow], optional
         Factor over time, linear between rows and constant outside. Default: 1.
 
