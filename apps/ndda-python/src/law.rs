@@ -36,7 +36,7 @@ impl Law {
 
     /// Lets go of the callable.
     pub fn clear(&self) {
-        // What it refers to may be freed, which may lead back here.
+        // Taken out before it is dropped: dropping it may free the simulation, which calls this again.
         let call = self.held().take();
         drop(call);
     }

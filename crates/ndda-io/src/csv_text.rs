@@ -50,7 +50,7 @@ pub(crate) fn fault_of_header(header: &StringRecord) -> Option<String> {
     Some(format!("its first line names the column `{name}` twice: leave one out"))
 }
 
-/// What to do about times in another unit, or under another name than that of their column.
+/// Advice for a table that lacks its column of times but has one with a similar name, as `time_ms`; empty where it has none.
 pub(crate) fn time_cure(header: &StringRecord, column: &str) -> String {
     let named = header.iter().find(|name| name.to_ascii_lowercase().starts_with("time"));
     named.map_or(String::new(), |name| {

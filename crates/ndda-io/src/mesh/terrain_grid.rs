@@ -21,7 +21,7 @@ const MOST_HEIGHTS: u64 = 1 << 24;
 /// The value that says "no height" where the header gives none.
 const NO_DATA: f64 = -9999.0;
 
-/// What is expected in the place of a decimal comma.
+/// Words for the number that an error expects where a file has a decimal comma.
 const POINT: &str = "a number whose decimals come after a point, as 2.5";
 
 /// Heights of terrain on a regular grid.

@@ -77,10 +77,10 @@ impl Simulation {
         let left = damping.left(&sums);
         for block in self.problem.blocks.ids() {
             if self.problem.shapes[self.bodies[block.index()].shape].kind != BodyKind::Fixed {
-                let before = self.remembered_motion(block);
                 let nodes = self.problem.blocks.nodes_of(block);
-                self.state.velocity[nodes].iter_mut().for_each(|v| *v *= left);
-                self.shift_remembered(block, before);
+                self.keep_forces(block, |simulation| {
+                    simulation.state.velocity[nodes].iter_mut().for_each(|v| *v *= left);
+                });
             }
         }
         Ok(report)

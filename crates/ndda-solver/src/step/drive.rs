@@ -119,20 +119,24 @@ impl Simulation {
         self.state.contact.bodies.clear();
     }
 
-    /// Motion of a block before its velocities change between steps, where contact damping remembers it.
-    pub(super) fn remembered_motion(&self, block: BlockId) -> Option<RigidMotion> {
+    /// Changes velocities of a block between steps. Contact damping takes the forces of the last step for those of the next, and finds them from how much the block has become
+    /// faster since: the motion that it remembers changes by as much.
+    pub(super) fn keep_forces<T>(&mut self, block: BlockId, change: impl FnOnce(&mut Self) -> T) -> T {
+        let before = self.remembered_motion(block);
+        let found = change(self);
+        if let Some((before, after)) = before.zip(self.remembered_motion(block)) {
+            let memory = &mut self.state.contact.bodies[block.index()];
+            memory.velocity_m_s += after.velocity_m_s - before.velocity_m_s;
+            memory.spin_rad_s += after.spin_rad_s - before.spin_rad_s;
+        }
+        found
+    }
+
+    /// Motion of a block, where contact damping remembers one.
+    fn remembered_motion(&self, block: BlockId) -> Option<RigidMotion> {
         self.state.contact.bodies.get(block.index())?;
         let (nodes, State { position, velocity, .. }) = (self.problem.blocks.nodes_of(block), &self.state);
         Some(self.shape(block).operator.rigid_motion(&position[nodes.clone()], &velocity[nodes]))
-    }
-
-    /// Changes what contact damping remembers of the motion of a block by as much as that has changed since: the forces of the last step, which it takes for those of the next,
-    /// are what they were.
-    pub(super) fn shift_remembered(&mut self, block: BlockId, before: Option<RigidMotion>) {
-        let Some((before, after)) = before.zip(self.remembered_motion(block)) else { return };
-        let memory = &mut self.state.contact.bodies[block.index()];
-        memory.velocity_m_s += after.velocity_m_s - before.velocity_m_s;
-        memory.spin_rad_s += after.spin_rad_s - before.spin_rad_s;
     }
 
     fn drivable(&self, block: BlockId, vectors: &[(&'static str, Vec3)]) -> Result<(), DriveError> {

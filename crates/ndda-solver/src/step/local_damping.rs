@@ -65,9 +65,7 @@ impl Simulation {
         }
         let mut change_j = ExactSum::new();
         for block in self.problem.blocks.ids() {
-            let before = self.remembered_motion(block);
-            change_j.add(self.damp_block(block, damping));
-            self.shift_remembered(block, before);
+            change_j.add(self.keep_forces(block, |simulation| simulation.damp_block(block, damping)));
         }
         damping.change_j = change_j.value();
         Ok(report)

@@ -79,7 +79,7 @@ impl Simulation {
         if !self.is_quiet() {
             return self.state.kept_force.clear();
         }
-        // What is not there rests on nothing.
+        // Blocks that a stage has removed have no reactions.
         let absent = self.stage.as_ref().map_or(&[][..], |stage| &stage.absent);
         for (block, _) in self.problem.blocks.ids().zip(absent).filter(|(_, absent)| **absent) {
             self.state.kept_force[self.problem.blocks.nodes_of(block)].fill(Vec3::zeros());

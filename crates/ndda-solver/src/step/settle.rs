@@ -294,10 +294,8 @@ impl Simulation {
     /// Stops all nodes.
     pub(super) fn stop_all(&mut self) {
         for block in self.problem.blocks.ids() {
-            let before = self.remembered_motion(block);
             let nodes = self.problem.blocks.nodes_of(block);
-            self.state.velocity[nodes].fill(Vec3::zeros());
-            self.shift_remembered(block, before);
+            self.keep_forces(block, |simulation| simulation.state.velocity[nodes].fill(Vec3::zeros()));
         }
     }
 

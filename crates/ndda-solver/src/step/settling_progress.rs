@@ -63,7 +63,7 @@ impl Progress {
         Self { damper, oscillation: Oscillation::default(), moving_j, load_j, highest_j: load_j }
     }
 
-    /// The same in the course of a run.
+    /// How a scene comes to rest again in the course of a run.
     pub(super) fn within_a_run(simulation: &Simulation, damping: Damping) -> Self {
         let progress = Self::new(simulation, damping);
         Self { moving_j: progress.load_j, ..progress }

@@ -16,7 +16,7 @@ use crate::step::setup::Setup;
 /// Density of the boxes [kg/m³].
 pub(crate) const DENSITY_KG_M3: f64 = 2500.0;
 
-/// What a scene begins with: boxes of one cell by kind, sides [m] and lower corner [m], in contact, under a gravity of 10 m/s².
+/// The setup of boxes in contact under a gravity of 10 m/s², each of one cell, given by its kind, sides [m] and lower corner [m].
 pub(crate) fn boxes(boxes: &[(BodyKind, [f64; 3], [f64; 3])]) -> Setup {
     let block = |(k, (_, size_m, at_m)): (usize, &(BodyKind, [f64; 3], [f64; 3]))| {
         let mesh = box_block(*size_m, [1; 3], BoxPattern::Six).expect("a box");

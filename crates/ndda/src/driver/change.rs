@@ -215,7 +215,7 @@ mod tests {
             matches!(refused, Err(ChangeError::TakeOver(TakeOverError::RemembersAccelerations))),
             "{refused:?}"
         );
-        // What changes later contradicts nothing.
+        // Loads that change only later do not contradict the remembered accelerations.
         driver.change(&[pushed("=", 1000, 3)]).unwrap();
     }
 

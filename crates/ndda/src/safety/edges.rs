@@ -1,4 +1,4 @@
-//! What is said where blocks topple about edges at which contact gives way.
+//! Notes on blocks that topple about edges at which contact gives way.
 //!
 //! A force whose line meets the base d inside an edge tips a block over where M = N h L₀/(9 k_n w d³) reaches 4/27 (`lean.rs`): on a rigid edge it would do so at d = 0.
 //! So the factor is too small by what moves the line by that d, which falls with the cube root of the penalty.
@@ -12,7 +12,7 @@ pub const LITTLE: f64 = 1e-4;
 /// does not bring it nearer.
 pub fn rigid(factor: f64, inside_m: f64, inside_next_m: f64) -> Option<f64> {
     let nearer_m = inside_m - inside_next_m;
-    // What rounding moves is no way.
+    // A move within rounding does not count.
     (nearer_m > 1e-3 * LITTLE * inside_m).then(|| factor * (1.0 + LITTLE * inside_m / nearer_m))
 }
 
@@ -35,7 +35,7 @@ pub fn one(
     })
 }
 
-/// That several blocks topple at once, of which nobody knows how their edges share the forces.
+/// That several blocks topple at once: how their edges share the forces is not known, so that no factor on rigid edges is given.
 pub fn several(count: usize, penalty_pa: f64) -> String {
     format!(
         "{count} blocks topple, about edges at which contact gives way: the factor may be too small. Repeat with contact.penalty_pa: {:.0e} (ten times larger) and \

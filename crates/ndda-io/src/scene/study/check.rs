@@ -166,7 +166,7 @@ mod tests {
     const SCENE: &str =
         "(title: \"t\", parameters: (phi: 30), time: (step_s: 1e-3, end_s: 1), materials: [])";
 
-    /// What is said of `--vary` with a path and values.
+    /// Messages and advice for an argument of `--vary`.
     fn told(vary: &str) -> String {
         let axes = Axis::from_words(&[vary.to_string()]).unwrap();
         let study = Study { axes, ..Study::of_scene("s.ron".into()) };
