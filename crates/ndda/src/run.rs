@@ -45,6 +45,7 @@ pub use pace::Pace;
 pub use rest::Resting;
 pub use resume::{ResumeError, Resumed};
 use run_log::RunLog;
+use twin::Again;
 pub use twin::Sensitivity;
 
 /// Ends a loop when somebody has raised the flag.
@@ -291,20 +292,18 @@ impl Run {
         summary.stages = std::mem::take(&mut outputs.stages.rows);
         let (folder, history) = outputs.end();
         let (sensitivity, built, tell, stop) = (self.sensitivity, self.built, self.tell, self.stop);
-        let twins = match loaded.scene.stages.is_empty() && is_whole(&summary) {
+        let twins = match is_whole(&summary) {
             true => sensitivity.twins(&simulation),
             false => Vec::new(),
         };
-        if let Some(built) = built.filter(|_| !twins.is_empty()) {
+        let settle = loaded.scene.settle.map(crate::build::settle);
+        let again = match loaded.scene.stages.is_empty() {
+            true => built.as_ref().map(|start| Again::FromStart { start, settle }),
+            false => Some(Again::ThroughStages { loaded: &loaded, folder: &beside, stop: &stop }),
+        };
+        if let Some(again) = again.filter(|_| !twins.is_empty()) {
             tell(&twin::told(&twins));
-            let settle = loaded.scene.settle.map(crate::build::settle);
-            twin::judge(
-                &mut summary,
-                &mut simulation,
-                &built,
-                (settle.as_ref(), &twins),
-                (&stop, self.strict),
-            );
+            twin::judge(&mut summary, &mut simulation, (&again, &twins), (&stop, self.strict));
         }
         if let (Some(folder), Some(log)) = (folder, &mut log) {
             write_results(&folder, &loaded.scene.output, &summary, log)?;

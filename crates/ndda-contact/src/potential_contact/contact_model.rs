@@ -169,6 +169,7 @@ impl ContactModel for PotentialContact {
             frames: &self.frames,
             field,
             hulls: &self.hulls,
+            openings: &self.openings,
         };
         self.overlaps.integrate(input, &parts, law)?;
         if !self.openings.is_empty() {

@@ -104,6 +104,7 @@ impl PotentialContact {
             frames: &self.frames,
             field,
             hulls: &self.hulls,
+            openings: &self.openings,
         };
         self.overlaps.add_touching(input, &parts)?;
         let law = self.potential.law();

@@ -36,6 +36,9 @@ const MOST_ONE_SIDED: f64 = 10.0;
 /// Factor by which a step reduces the sums of squares of the steps before it: they reach over about 64 steps.
 const KEPT: f64 = 1.0 - 1.0 / 64.0;
 
+/// Mean of |Δ²a|² over that of |Δa|² from which on accelerations alternate from step to step: 4 if they do nothing else.
+const ALTERNATES: f64 = 3.0;
+
 /// Square of a second difference over its mean over the last steps from which on it is a jump, and no part of a vibration.
 const JUMP2: f64 = 4.0;
 
@@ -153,10 +156,11 @@ impl Ringing {
         self.first2 = KEPT * self.first2 + first2;
         self.second2 = KEPT * self.second2 + second2;
         self.weight = KEPT * self.weight + 1.0;
-        self.count_maxima(square(&now) - square(&self.last));
+        let only_supported = drive.is_held && !drive.touches;
+        let reverses = dot(&now, &self.last) < 0.0 && dot(&change, &self.change) < 0.0;
+        self.count_maxima(square(&now) - square(&self.last), only_supported && reverses);
         self.has_friction |= drive.has_friction;
         self.fastest_m_s = self.fastest_m_s.max(drive.speed_m_s);
-        let only_supported = drive.is_held && !drive.touches;
         self.now_m_s += step.dt_s
             * match (only_supported, step.is_one_sided) {
                 (true, _) => {
@@ -179,8 +183,9 @@ impl Ringing {
         }
     }
 
-    fn count_maxima(&mut self, growth: f64) {
-        if growth < 0.0 && self.grows {
+    /// Counts the maxima of an acceleration; one that alternates has one in every step.
+    fn count_maxima(&mut self, growth: f64, alternates: bool) {
+        if growth < 0.0 && self.grows || alternates {
             self.maxima += 1;
         }
         if growth != 0.0 {
@@ -207,7 +212,13 @@ impl Ringing {
     /// Most that a vibration may be wrong; there is no limit while forces are one-sided, which damp or feed vibrations.
     fn bound_m_s(&self, step: &Quadrature, only_supported: bool) -> f64 {
         let is_bounded = (only_supported || !step.is_one_sided) && self.maxima > 1 && self.second2 > 0.0;
-        if is_bounded { 2.0 * self.vibration_m_s(step) } else { f64::INFINITY }
+        if is_bounded && only_supported && self.second2 > ALTERNATES * self.first2 {
+            0.25 * step.dt_s * (self.first2 / self.weight).sqrt()
+        } else if is_bounded {
+            2.0 * self.vibration_m_s(step)
+        } else {
+            f64::INFINITY
+        }
     }
 
     /// Error of the velocity now [m/s].
@@ -217,7 +228,11 @@ impl Ringing {
 }
 
 fn square(a: &[Vec3; 2]) -> f64 {
-    a[0].norm_squared() + a[1].norm_squared()
+    dot(a, a)
+}
+
+fn dot(a: &[Vec3; 2], b: &[Vec3; 2]) -> f64 {
+    a[0].dot(&b[0]) + a[1].dot(&b[1])
 }
 
 #[cfg(test)]
@@ -291,6 +306,22 @@ mod tests {
                 ringing.error_m_s()
             );
         }
+    }
+
+    #[test]
+    fn all_of_a_velocity_that_alternates_from_step_to_step_is_wrong() {
+        // v₁ = −v₀ of 1 m/s by accelerations of ±2 v/Δt, which die out slowly.
+        let (dt_s, mut ringing) = (0.5, Ringing::default());
+        for k in 0..40 {
+            let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
+            let drive = RigidForcing {
+                touches: false,
+                speed_m_s: 1.0,
+                ..pushed(sign * 2.0 / dt_s * 0.9999f64.powi(k), true)
+            };
+            ringing.add(&Quadrature { is_first: k == 0, elastic_lag: 0.5, ..step(dt_s, false) }, &drive);
+        }
+        assert!((ringing.error_m_s() - 1.0).abs() < 0.02, "{}", ringing.error_m_s());
     }
 
     #[test]

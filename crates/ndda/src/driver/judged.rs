@@ -10,7 +10,7 @@ use super::Driver;
 use crate::judge::verdict;
 use crate::numbers::four_figures;
 use crate::run::Sensitivity;
-use crate::run::twin::{self, Twin};
+use crate::run::twin::{self, Again, Twin};
 use crate::summary::{Label, LabelWord};
 
 /// What other than a step changes a simulation.
@@ -122,8 +122,8 @@ impl Driver {
     fn repeated(&mut self, twins: &[Twin], stop: &AtomicBool, tell: &dyn Fn(&str)) -> Option<Label> {
         tell(&twin::told(twins));
         let settle = self.model.loaded.scene.settle.map(crate::build::settle);
-        let simulation = &mut self.model.simulation;
-        twin::label_of_twins(simulation, &self.course.built, settle.as_ref(), twins, stop)
+        let again = Again::FromStart { start: &self.course.built, settle };
+        twin::label_of_twins(&mut self.model.simulation, &again, twins, stop)
     }
 }
 

@@ -108,9 +108,9 @@ pub fn guess(scene: &Scene, simulation: &mut Simulation) -> Result<Guess, SinkEr
     let rows = events(steps, scene.output.history_rows.into());
     let frames = frames(scene);
     let run_s = first_s + steps as f64 * step_s + rows as f64 * row_s + frames as f64 * frame_s;
-    // Twins write nothing, and follow no stages.
+    // Twins write nothing.
     let [twin_s, half_step_s] = [twin::may_want_twin(simulation), twin::may_want_half_step(simulation)]
-        .map(|may| (scene.stages.is_empty() && may).then_some(first_s + steps as f64 * step_s));
+        .map(|may| may.then_some(first_s + steps as f64 * step_s));
     let half_step_s = half_step_s.map(|twin_s| 2.0 * twin_s);
     let files = files(scene, simulation, (rows, frames), frame.len() as u64);
     let settles = scene.settle.is_some();

@@ -162,12 +162,12 @@ pub fn moved(motion: &Motion) -> String {
 /// Blocks that nothing can hold any more, if there are any, in a line.
 fn fallen_out_in_words(blocks: &[String]) -> String {
     let [first, others @ ..] = blocks else { return String::new() };
-    let who = match others.len() {
-        0 => format!("`{first}` has"),
-        more => format!("`{first}` and {} have", counted(more, "other block", "other blocks")),
+    let (who, them) = match others.len() {
+        0 => (format!("`{first}` has"), "it"),
+        more => (format!("`{first}` and {} have", counted(more, "other block", "other blocks")), "them"),
     };
     format!(
-        "{who} fallen out of the model, below everything else: extend the ground, or end the run sooner\n"
+        "{who} fallen out of the model, past everything that could hold {them}: extend the ground, or end the run sooner\n"
     )
 }
 

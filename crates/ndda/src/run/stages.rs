@@ -39,11 +39,16 @@ impl Course<'_> {
         let shown = goes_on
             || ndda_solver::show(simulation, steps, &StepReport::default(), &mut [&mut *outputs])?
                 .is_continue();
-        if shown { self.go(simulation, outputs) } else { Ok(()) }
+        if shown { self.go(simulation, outputs, &mut |_| {}) } else { Ok(()) }
     }
 
-    /// Goes on from where a simulation is to the end of the last stage, or until somebody asks to end.
-    pub(super) fn go(&self, simulation: &mut Simulation, outputs: &mut Outputs) -> Result<(), RunError> {
+    /// Goes on from where a simulation is to the end of the last stage, or until somebody asks to end; `begun` gets it at the beginning of each stage.
+    pub(super) fn go(
+        &self,
+        simulation: &mut Simulation,
+        outputs: &mut Outputs,
+        begun: &mut dyn FnMut(&mut Simulation),
+    ) -> Result<(), RunError> {
         let scene = &self.loaded.scene;
         let ends = ends(scene);
         let steps = ends[ends.len() - 1];
@@ -69,6 +74,7 @@ impl Course<'_> {
                 TakeOverError::Step(error) => RunError::Step(error),
                 error => RunError::Sink(format!("stage `{}`: {error}", scene.stages[at].name).into()),
             })?;
+            begun(simulation);
             outputs.stages.at = at + 1;
             if scene.stages[at].reset_displacements {
                 outputs.recorder.motions.begin_anew();

@@ -5,11 +5,16 @@
 //! of impacts have grown in the next ones.
 
 mod parted;
+mod through_stages;
 
 use std::ops::ControlFlow;
+use std::path::Path;
 use std::str::FromStr;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
+
+use ndda_io::read::LoadedScene;
 
 use ndda_mesh::geometry::Aabb;
 use ndda_mesh::{BlockId, Vec3};
@@ -128,16 +133,38 @@ pub(crate) fn told(twins: &[Twin]) -> String {
     )
 }
 
+/// How a twin takes the steps of its run again.
+pub(crate) enum Again<'a> {
+    /// From the start of the run, and from rest where it begins at rest.
+    FromStart {
+        /// The start as it was built.
+        start: &'a StartSnapshot,
+        /// How the run begins at rest.
+        settle: Option<Settle>,
+    },
+    /// Through the stages of the scene, which is built anew.
+    ThroughStages {
+        /// The scene.
+        loaded: &'a LoadedScene,
+        /// Folder of the files that it names.
+        folder: &'a Path,
+        /// Raised when somebody asks the run to end.
+        stop: &'a Arc<AtomicBool>,
+    },
+}
+
+/// Positions [m] and velocities [m/s] of all nodes.
+type Ended = (Vec<Vec3>, Vec<Vec3>);
+
 /// Changes the label of an accurate run if a twin ends elsewhere, and books the time that this takes.
 pub(super) fn judge(
     summary: &mut Summary,
     simulation: &mut Simulation,
-    start: &StartSnapshot,
-    (settle, twins): (Option<&Settle>, &[Twin]),
+    (again, twins): (&Again, &[Twin]),
     (stop, strict): (&AtomicBool, bool),
 ) {
     let began = Instant::now();
-    if let Some(label) = label_of_twins(simulation, start, settle, twins, stop) {
+    if let Some(label) = label_of_twins(simulation, again, twins, stop) {
         summary.label = label;
         summary.status = if strict { Status::Failed } else { summary.status };
     } else if stop.load(Ordering::Relaxed) {
@@ -153,13 +180,12 @@ pub(super) fn judge(
 /// The label of an accurate run of which a twin ends elsewhere; none where all end beside it, or where somebody asks to end.
 pub(crate) fn label_of_twins(
     simulation: &mut Simulation,
-    start: &StartSnapshot,
-    settle: Option<&Settle>,
+    again: &Again,
     twins: &[Twin],
     stop: &AtomicBool,
 ) -> Option<Label> {
     let contacts = simulation.replace_contacts(None);
-    let parted = part(simulation, start, settle, twins, stop);
+    let parted = part(simulation, again, twins, stop);
     simulation.replace_contacts(contacts);
     let (word, reason) = match parted {
         Ok(parted) => parted.map(|parted| (parted.word(), parted.to_string()))?,
@@ -171,30 +197,35 @@ pub(crate) fn label_of_twins(
     Some(Label { word, reasons: vec![reason] })
 }
 
-/// Runs twins of a simulation that has come to its end from `start`, and puts it back into its end. None where all stay together, or
-/// where somebody asks to end.
+/// Runs twins of a simulation that has come to its end. None where all stay together, or where somebody asks to end.
 ///
 /// # Errors
-/// [`StepError`] that stops a twin; the end is put back then, too.
+/// What stops a twin, in words.
 fn part(
     simulation: &mut Simulation,
-    start: &StartSnapshot,
-    settle: Option<&Settle>,
+    again: &Again,
     twins: &[Twin],
     stop: &AtomicBool,
-) -> Result<Option<Parted>, StepError> {
-    let (end, step_s) = (simulation.snapshot(), simulation.step_s());
-    let drift_m = DRIFTS * PUSH * simulation.speed_scale_m_s() * simulation.time_s();
+) -> Result<Option<Parted>, String> {
+    // A twin through stages is pushed at the beginning of each.
+    let pushes = match again {
+        Again::FromStart { .. } => 1,
+        Again::ThroughStages { loaded, .. } => 1 + loaded.scene.stages.len(),
+    };
+    let scale_m_s = simulation.speed_scale_m_s();
+    let drift_m = DRIFTS * PUSH * pushes as f64 * scale_m_s * simulation.time_s();
     for &twin in twins {
-        let outcome = run(simulation, start, (twin, end.state.step), settle, stop);
-        let ended = (simulation.state().position.clone(), simulation.state().velocity.clone());
-        if simulation.step_s() != step_s {
-            simulation.change_step(step_s)?;
-        }
-        simulation.restore(end.clone()).expect("it is of this simulation");
-        if !outcome? {
-            break;
-        }
+        let ended = match again {
+            Again::FromStart { start, settle } => {
+                from_start(simulation, (start, settle.as_ref()), twin, stop)
+                    .map_err(|error| error.to_string())?
+            }
+            Again::ThroughStages { loaded, folder, stop } => {
+                let ranks = simulation.ranks().clone();
+                through_stages::ended((loaded, folder), (twin, scale_m_s), ranks, stop)?
+            }
+        };
+        let Some(ended) = ended else { break };
         let parted = parted(simulation, twin, &ended, drift_m);
         if parted.is_some() {
             return Ok(parted);
@@ -203,36 +234,45 @@ fn part(
     Ok(None)
 }
 
+/// End of a twin from the start of its run, which is at its end before and after; none where somebody asks to end.
+///
+/// # Errors
+/// [`StepError`] that stops the twin.
+fn from_start(
+    simulation: &mut Simulation,
+    start: (&StartSnapshot, Option<&Settle>),
+    twin: Twin,
+    stop: &AtomicBool,
+) -> Result<Option<Ended>, StepError> {
+    let (end, step_s) = (simulation.snapshot(), simulation.step_s());
+    let outcome = run(simulation, start, (twin, end.state.step), stop);
+    let ended = (simulation.state().position.clone(), simulation.state().velocity.clone());
+    if simulation.step_s() != step_s {
+        simulation.change_step(step_s)?;
+    }
+    simulation.restore(end).expect("it is of this simulation");
+    Ok(outcome?.then_some(ended))
+}
+
 /// Whether the twin of a run of so many steps came to its end.
 fn run(
     simulation: &mut Simulation,
-    start: &StartSnapshot,
+    (start, settle): (&StartSnapshot, Option<&Settle>),
     (twin, steps): (Twin, u64),
-    settle: Option<&Settle>,
     stop: &AtomicBool,
 ) -> Result<bool, StepError> {
-    let mut changed = simulation.whole(start);
+    let (scale_m_s, whole) = (simulation.speed_scale_m_s(), simulation.whole(start));
     let mut steps_of_twin = steps;
-    match twin {
-        Twin::Push(times) => {
-            let push_m_s = times * PUSH * simulation.speed_scale_m_s();
-            for block in simulation.blocks().ids().filter(|&block| moves(simulation, block)) {
-                let push = push_m_s * direction(block);
-                changed.state.velocity[simulation.blocks().nodes_of(block)]
-                    .iter_mut()
-                    .for_each(|v| *v += push);
-            }
-        }
-        Twin::HalfStep => {
-            steps_of_twin = 2 * steps;
-            simulation.change_step(0.5 * simulation.step_s())?;
-        }
+    if twin == Twin::HalfStep {
+        steps_of_twin = 2 * steps;
+        simulation.change_step(0.5 * simulation.step_s())?;
     }
-    simulation.restore(changed).expect("it is of this simulation");
+    simulation.restore(whole).expect("it is of this simulation");
     let ranks = simulation.ranks().clone();
     if let Some(settle) = settle {
         simulation.settle_watched(settle, &mut |_| unless_ended(&*ranks, stop))?;
     }
+    push(simulation, twin, scale_m_s);
     while simulation.state().step < steps_of_twin {
         if unless_ended(&*ranks, stop) == ControlFlow::Break(()) {
             return Ok(false);
@@ -240,6 +280,16 @@ fn run(
         simulation.step()?;
     }
     Ok(true)
+}
+
+/// Gives free blocks the velocities by which a twin differs, where it does.
+pub(super) fn push(simulation: &mut Simulation, twin: Twin, scale_m_s: f64) {
+    let Twin::Push(times) = twin else { return };
+    let mut velocity = vec![Vec3::zeros(); simulation.state().velocity.len()];
+    for block in simulation.blocks().ids().filter(|&block| moves(simulation, block)) {
+        velocity[simulation.blocks().nodes_of(block)].fill(times * PUSH * scale_m_s * direction(block));
+    }
+    simulation.push(&velocity);
 }
 
 /// Whether a block has hopped many times with friction in between that could stop it.
@@ -276,121 +326,4 @@ fn direction(block: BlockId) -> Vec3 {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::{Model, Run};
-
-    /// A floor, and blocks above it.
-    fn label(
-        gravity: &str,
-        (penalty_pa, step_s): (f64, f64),
-        blocks: &[&str],
-        sensitivity: Sensitivity,
-    ) -> Summary {
-        let block = |(name, more): (usize, &&str)| {
-            format!(
-                "(name: \"{name}\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), {more}),"
-            )
-        };
-        let blocks: String = blocks.iter().enumerate().map(block).collect();
-        let text = format!(
-            "(title: \"twins\", time: (step_s: {step_s:e}, end_s: 1.1), gravity_m_s2: {gravity},
-            materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: 2650)],
-            blocks: [(name: \"floor\", material: \"rock\", body: Fixed, shape: Box(size_m: (40, 20, 1), cells: (1, 1, 1)),
-                at_m: (-10, -10, -1)), {blocks}],
-            contact: Potential(penalty_pa: {penalty_pa:e}, potential: Smooth(), friction: (friction_deg: 25)))"
-        );
-        Run::new(Model::from_text(&text).unwrap()).sensitivity(sensitivity).finish(&mut []).unwrap().summary
-    }
-
-    const TUMBLING: [&str; 4] = [
-        "at_m: (0, 0, 0.5), spin_rad_s: (0.5, 0.2, 0)",
-        "at_m: (0.6, 0.1, 1.8), spin_rad_s: (1, 0, 0.3)",
-        "at_m: (-0.3, 0.4, 3.2), spin_rad_s: (0, 0.7, 0)",
-        "at_m: (0.2, -0.3, 4.6)",
-    ];
-
-    #[test]
-    fn cubes_that_tumble_over_each_other_are_sensitive_and_the_run_keeps_its_bits() {
-        let [with, without] = [Sensitivity::Auto, Sensitivity::Never]
-            .map(|sensitivity| label("(0, 0, -9.81)", (1e10, 5e-5), &TUMBLING, sensitivity));
-        assert_eq!(without.label.word, LabelWord::Accurate, "{:?}", without.label.reasons);
-        assert_eq!(with.label.word, LabelWord::Sensitive, "{:?}", with.label.reasons);
-        assert_eq!((with.state_crc32, with.verdicts), (without.state_crc32, without.verdicts));
-    }
-
-    #[test]
-    fn cubes_that_slide_side_by_side_are_not_sensitive_though_they_part() {
-        let sliding = ["at_m: (0, 0, 0)", "at_m: (3, 0, 0)", "at_m: (0, 3, 0)"];
-        let summary = label("(5.5, 0, -8.1)", (2e9, 2e-4), &sliding, Sensitivity::Auto);
-        assert_eq!(summary.label.word, LabelWord::Accurate, "{:?}", summary.label.reasons);
-        assert!(summary.stages_s.0.iter().any(|(stage, _)| stage == "sensitivity"));
-    }
-
-    #[test]
-    fn a_cube_that_hops_on_undamped_contact_is_sensitive_in_its_velocity_and_told_how_to_end_that() {
-        let text = "(title: \"pulled\", time: (step_s: 3e-5, end_s: 1), gravity_m_s2: (3.92, 0, -9.81),
-            materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.2, density_kg_m3: 2600)],
-            blocks: [
-                (name: \"floor\", material: \"rock\", body: Fixed, shape: Box(size_m: (4, 2, 0.5), cells: (1, 1, 1)), at_m: (0, 0, -0.5)),
-                (name: \"cube\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), at_m: (1, 0.5, 0)),
-            ],
-            contact: Potential(penalty_pa: 2e8, friction: (friction_deg: 35)))";
-        let summary = Run::new(Model::from_text(text).unwrap()).finish(&mut []).unwrap().summary;
-        let reason = summary.label.reasons.join("; ");
-        assert_eq!(summary.label.word, LabelWord::Sensitive, "{reason}");
-        assert!(
-            reason.contains("with other velocities") && reason.contains("restitution of 0.5"),
-            "{reason}"
-        );
-    }
-
-    #[test]
-    fn an_elastic_block_whose_face_hops_while_it_slides_is_sensitive_although_one_twin_ends_near_it() {
-        let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
-            .join("../../scenes/extreme/elastic_block_stands.ron");
-        let set = ["gravity_ramp_s=0", "contact.penalty_pa=6e10", "output.frames=0"].map(String::from);
-        let summary = Run::new(Model::open(&file, &set).unwrap()).finish(&mut []).unwrap().summary;
-        assert_eq!(summary.label.word, LabelWord::Sensitive, "{:?}", summary.label.reasons);
-    }
-
-    #[test]
-    fn a_stone_whose_impacts_have_grown_an_error_is_inaccurate_until_its_step_is_halved() {
-        let stone = |step_s: f64| {
-            let text = format!(
-                "(title: \"stone\", time: (step_s: {step_s:e}, end_s: 2), gravity_m_s2: (4.905, 0, -8.496),
-                materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: 2600)],
-                blocks: [
-                    (name: \"slope\", material: \"rock\", body: Fixed, shape: Box(size_m: (60, 20, 1), cells: (1, 1, 1)), at_m: (-5, -10, -1)),
-                    (name: \"stone\", material: \"rock\", body: Rigid,
-                        shape: Prism(outline_m: ((0, 0), (1, 0), (0.4, 0.8)), height_m: 0.7, cells: (1, 1)),
-                        turns: [(axis: (0.941, -0.234, 0.225), angle_deg: 110.73)], at_m: (0, 0, 1.88),
-                        velocity_m_s: (0.341, 0.105, 0), spin_rad_s: (1.441, -0.666, 0)),
-                ],
-                contact: Potential(penalty_pa: 1e10, potential: Smooth(), friction: (friction_deg: 60)))"
-            );
-            Run::new(Model::from_text(&text).unwrap()).finish(&mut []).unwrap().summary.label
-        };
-        let (long, short) = (stone(2e-4), stone(1e-4));
-        assert_eq!(long.word, LabelWord::Inaccurate, "{:?}", long.reasons);
-        assert!(long.reasons[0].contains("errors of impacts grow"), "{:?}", long.reasons);
-        assert_eq!(short.word, LabelWord::Accurate, "{:?}", short.reasons);
-    }
-
-    #[test]
-    fn blocks_that_rounding_alone_moves_are_not_sensitive() {
-        let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/extreme/at_rest.ron");
-        let run = Run::new(Model::open(&file, &[]).unwrap()).sensitivity(Sensitivity::Always);
-        let summary = run.finish(&mut []).unwrap().summary;
-        assert_eq!(summary.label.word, LabelWord::Accurate, "{:?}", summary.label.reasons);
-    }
-
-    #[test]
-    fn two_blocks_have_no_twin_unless_one_is_asked_for() {
-        let sliding = ["at_m: (0, 0, 0)"];
-        for (sensitivity, has_twin) in [(Sensitivity::Auto, false), (Sensitivity::Always, true)] {
-            let summary = label("(5.5, 0, -8.1)", (2e9, 2e-4), &sliding, sensitivity);
-            assert_eq!(summary.stages_s.0.iter().any(|(stage, _)| stage == "sensitivity"), has_twin);
-        }
-    }
-}
+mod tests;

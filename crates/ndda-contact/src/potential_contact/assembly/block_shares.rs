@@ -2,12 +2,14 @@
 
 use std::ops::Range;
 
-use ndda_mesh::geometry::triangle_area_vector;
 use ndda_mesh::{BlockId, TetId};
+use pulp::Arch;
 
 use crate::assembly::overlap_parts::OverlapParts;
-use crate::integration::frames::FrameCache;
-use crate::integration::pair_moments::{has_centroid, pair_energy};
+use crate::integration::chunk_parts::Triangle;
+use crate::integration::fluxes::FluxQueue;
+use crate::integration::pair_moments::has_centroid;
+use crate::integration::scene::Scene;
 use crate::model::ContactInput;
 
 /// Blocks whose shares are found by one thread.
@@ -23,9 +25,9 @@ pub(super) struct BlockShares {
 /// Scratch memory of a thread.
 #[derive(Default)]
 pub(super) struct ShareScratch {
-    /// Pieces of the surface of one block that have a flux.
+    /// Pieces of the surface of one block.
     pieces: Vec<Piece>,
-    frames: FrameCache,
+    fluxes: FluxQueue,
 }
 
 /// The part of a triangle in a tetrahedron.
@@ -35,6 +37,8 @@ struct Piece {
     number: u32,
     /// Pair of blocks in [`Candidates::neighbours`].
     pair: u32,
+    /// Area of the triangle times the distance of its plane from the centroid.
+    height_m3: f64,
     flux_m3: f64,
     /// Volume of the tetrahedron [m³].
     volume_m3: f64,
@@ -50,8 +54,11 @@ impl BlockShares {
         scratch: &mut ShareScratch,
     ) {
         self.of_pair.clear();
-        for block in blocks.map(|block| BlockId(block as u32)) {
-            scratch.list_pieces(input, parts, block);
+        let (arch, scene) = (Arch::new(), parts.scene(input));
+        let has_facets = |block: BlockId| !parts.candidates.numbers_of(block).is_empty();
+        let may_touch = |block: &BlockId| has_facets(*block) && parts.hulls.may_touch(*block);
+        for block in blocks.map(|block| BlockId(block as u32)).filter(may_touch) {
+            scratch.list_pieces(arch, &scene, block);
             scratch.pieces.sort_unstable_by_key(|piece| (piece.tet, piece.number));
             for pieces in scratch.pieces.chunk_by(|a, b| a.tet == b.tet) {
                 let Piece { pair, volume_m3, .. } = pieces[0];
@@ -71,34 +78,33 @@ impl BlockShares {
 }
 
 impl ShareScratch {
-    fn list_pieces(&mut self, input: &ContactInput, parts: &OverlapParts, block: BlockId) {
-        let OverlapParts { candidates, frames: placed, hulls, .. } = *parts;
-        let Self { pieces, frames } = self;
+    /// The pieces of a block that have a flux.
+    fn list_pieces(&mut self, arch: Arch, scene: &Scene, block: BlockId) {
+        let Self { pieces, fluxes } = self;
         pieces.clear();
-        let mut last = None;
-        let (mut corners, mut area_vector) = Default::default();
-        for facet in candidates.facets_of(block) {
+        let (mut last, mut triangle) = (None, Triangle::default());
+        let candidates = scene.candidates;
+        let near = |neighbours| !scene.hulls.are_apart(neighbours);
+        for facet in candidates.facets_that(block, candidates.numbers_of(block), near) {
             // Facets of one triangle follow each other.
             if last != Some(facet.triangle) {
-                corners = input.blocks.triangle_corners(facet.triangle, input.position);
-                area_vector = triangle_area_vector(&corners);
-                last = Some(facet.triangle);
+                (last, triangle) = (Some(facet.triangle), Triangle::new(scene, facet.triangle));
             }
-            let shift = hulls.may_touch(facet.target).then(|| placed.shift_of(facet.target));
-            for tet in facet.tets() {
-                let frame = match shift {
-                    Some(shift) => placed.at(candidates.slot_of(tet).wrapping_add(shift)),
-                    None => frames.of(tet, candidates, input),
-                };
-                if frame.lambda_inside(&corners).is_some() {
-                    let flux_m3 = pair_energy(&corners, &area_vector, frame);
-                    if flux_m3 != 0.0 {
-                        let (number, pair, volume_m3) =
-                            (pieces.len() as u32, facet.neighbours, frame.volume_m3);
-                        pieces.push(Piece { tet, number, pair, flux_m3, volume_m3 });
-                    }
-                }
+            let Triangle { corners, normal, area } = &triangle;
+            if *area == 0.0 {
+                continue;
             }
+            scene.each_near_tet(arch, &facet, (corners, normal), |tet, _, frame, lambda| {
+                let (number, pair, volume_m3) = (pieces.len() as u32, facet.neighbours, frame.volume_m3);
+                fluxes.push(arch, number, lambda);
+                let height_m3 = area * frame.centroid_distance(&corners[0], normal);
+                pieces.push(Piece { tet, number, pair, height_m3, flux_m3: 0.0, volume_m3 });
+            });
         }
+        fluxes.finish(arch, |piece, mean| {
+            let piece = &mut pieces[piece as usize];
+            piece.flux_m3 += mean * piece.height_m3;
+        });
+        pieces.retain(|piece| piece.flux_m3 != 0.0);
     }
 }

@@ -192,11 +192,6 @@ impl Candidates {
         self.slot_start[block.index()]..self.slot_start[block.index() + 1]
     }
 
-    /// The corners of a target tetrahedron in the order of node numbers.
-    pub(crate) fn order_of(&self, tet: TetId) -> &[u8; 4] {
-        &self.order[self.slot_of(tet) as usize]
-    }
-
     /// Name of what finds the pairs.
     pub(crate) fn finder(&self) -> &'static str {
         self.broad_phase.name()

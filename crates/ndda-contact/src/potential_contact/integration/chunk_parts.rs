@@ -41,16 +41,16 @@ impl Chunk {
 
 /// A contactor's triangle.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Triangle {
-    pub(super) corners: [Vec3; 3],
+pub(crate) struct Triangle {
+    pub(crate) corners: [Vec3; 3],
     /// Outward unit normal.
-    pub(super) normal: Vec3,
-    pub(super) area: f64,
+    pub(crate) normal: Vec3,
+    pub(crate) area: f64,
 }
 
 impl Triangle {
     /// The triangle at the positions of its nodes.
-    pub(super) fn new(scene: &Scene, triangle: TriangleId) -> Self {
+    pub(crate) fn new(scene: &Scene, triangle: TriangleId) -> Self {
         let corners = scene.blocks.triangle_corners(triangle, scene.position);
         let area_vector = triangle_area_vector(&corners);
         let area = area_vector.norm();

@@ -1,6 +1,6 @@
 //! The frames of a step: of the tetrahedra that a triangle may be in, where no face keeps their block from all others.
 
-use ndda_mesh::{BlockId, TetId};
+use ndda_mesh::BlockId;
 use rayon::prelude::*;
 
 use crate::affine::convex_target::ConvexBlocks;
@@ -92,33 +92,5 @@ impl Frames {
     #[inline]
     pub fn at(&self, place: u32) -> &TetFrame {
         &self.all[place as usize]
-    }
-}
-
-/// Frames of tetrahedra that have none among [`Frames`], the last ones asked for.
-pub(crate) struct FrameCache {
-    tet: Vec<TetId>,
-    frame: Vec<TetFrame>,
-}
-
-/// A power of two, larger than the number of tetrahedra near some blocks that come one after the other.
-const CACHED: usize = 1024;
-
-impl Default for FrameCache {
-    fn default() -> Self {
-        Self { tet: vec![TetId(u32::MAX); CACHED], frame: vec![TetFrame::default(); CACHED] }
-    }
-}
-
-impl FrameCache {
-    /// The frame of a candidate where the nodes are, which must be the same in all calls.
-    pub(crate) fn of(&mut self, tet: TetId, candidates: &Candidates, input: &ContactInput) -> &TetFrame {
-        let place = tet.index() % CACHED;
-        if self.tet[place] != tet {
-            let corners = input.blocks.tet_corners(tet, input.position);
-            self.frame[place] = TetFrame::in_order(&corners, candidates.order_of(tet));
-            self.tet[place] = tet;
-        }
-        &self.frame[place]
     }
 }

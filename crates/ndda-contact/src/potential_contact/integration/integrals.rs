@@ -16,15 +16,13 @@ use crate::integration::affine_target::{EvaluateHalfSpaces, PushRegions};
 use crate::integration::chunk_parts::{Chunk, Results, Triangle};
 use crate::integration::clip::Outline;
 use crate::integration::function_moments::{Placed, add_function};
-use crate::integration::joint_faces::two_faces_separate;
 use crate::integration::overlap_pair::{ActiveFacet, ChunkFacet, FacetMoments, OverlapPair};
 use crate::integration::pair_moments::{PairMoments, PsiRange};
 use crate::integration::pair_report::OverlapReport;
 use crate::integration::queue::RegionQueue;
 use crate::integration::region::{Pieces, Region};
-use crate::integration::scene::{Scene, are_on_one_side, lies_in_a_plane_of};
+use crate::integration::scene::{Scene, are_on_one_side};
 use crate::integration::shared_chunks::SharedChunks;
-use crate::integration::tet_frame::{by_face, some_face_separates};
 use crate::potential::contact_potential::PotentialField;
 use crate::room::{copy_into, make_room};
 
@@ -176,29 +174,12 @@ impl Scratch {
         if scene.hulls.affine_target(facet.target).is_some() {
             return self.add_affine_target(arch, scene, facet, triangle);
         }
-        if scene.hulls.keep_apart(arch, facet.target, corners)
-            || scene.is_on_one_side(facet, &corners[0], normal)
-        {
-            return;
-        }
-        let (pieces, shift) = (!scene.field.is_element(), scene.frames.shift_of(facet.target));
-        for tet in facet.tets() {
-            let slot = scene.candidates.slot_of(tet).wrapping_add(shift);
-            let frame = scene.frames.at(slot);
-            let [x, y, z] = frame.lambda_by_corner(corners);
-            let at = [&x, &y, &z];
-            let (lambda, is_apart) = (by_face(at), some_face_separates(at));
-            if (is_apart && !(pieces && lies_in_a_plane_of(frame, &lambda, normal)))
-                || two_faces_separate(at)
-                || scene.tet_is_on_one_side(tet, &corners[0], normal)
-            {
-                continue;
-            }
+        scene.each_near_tet(arch, facet, (corners, normal), |tet, slot, frame, lambda| {
             let at = self.seen.len() as u32;
             let moments = PairMoments::default();
-            self.seen.push(PendingPair { tet, slot, lambda, range: None, moments });
-            self.add_regions(arch, scene, at, &Placed { tet, frame, lambda: &lambda, normal, area: *area });
-        }
+            self.seen.push(PendingPair { tet, slot, lambda: *lambda, range: None, moments });
+            self.add_regions(arch, scene, at, &Placed { tet, frame, lambda, normal, area: *area });
+        });
     }
 
     /// A facet of a scene in which joints open by slip: it is moved out before it is clipped, and its force acts where it is.

@@ -108,27 +108,45 @@ impl<const CORNERS: usize, const CUTS: usize, const EDGES: usize> WithSimd
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Self { group, moments } = self;
-        let cuts = if CUTS < MOST_CUTS { CUTS } else { group.cuts };
-        let corners = if CORNERS < MOST_CORNERS { CORNERS } else { group.corners };
         for k in 0..group.len.div_ceil(S::F64_LANES) {
             let load = |row: &Row| S::as_simd_f64s(row).0[k];
-            let field = |at: &[Row; 3]| Form::through(simd, [load(&at[0]), load(&at[1]), load(&at[2])]);
             let mut sums = Sums::zero(simd);
-            let mut cuts = group.fields.iter().zip(&group.bounds).take(cuts);
-            let mut edges = match (CORNERS, CUTS) {
-                (3, 0) => Edges::<S, EDGES>::triangle(simd),
-                (3, _) => {
-                    let (cut, bound) = cuts.next().expect("a group with cuts");
-                    Edges::of_triangle(simd, &field(cut), load(bound))
-                }
-                _ => Edges::outline(simd, &group.outline[..corners], load),
-            };
-            for (cut, bound) in cuts {
-                edges.cut(simd, &field(cut), load(bound), &mut sums.doubtful);
-            }
-            add_fan(simd, &edges, &field(&group.phi), load(&group.slope), &mut sums);
+            let edges = Rims::<CORNERS, CUTS>::of::<S, EDGES>(simd, group, k, &mut sums.doubtful);
+            let phi = Form::of(simd, &group.phi, k);
+            add_fan(simd, &edges, &phi, load(&group.slope), &mut sums);
             sums.store(moments, &mut |row, v| S::as_mut_simd_f64s(row).0[k] = v);
         }
+    }
+}
+
+/// Rims of regions with so many corners and cuts; as many as there may be stand for any number.
+pub(super) struct Rims<const CORNERS: usize, const CUTS: usize>;
+
+impl<const CORNERS: usize, const CUTS: usize> Rims<CORNERS, CUTS> {
+    /// The rims of the k-th lanes of a group; what has to be done one by one is marked.
+    #[inline(always)]
+    pub(super) fn of<S: Simd, const EDGES: usize>(
+        simd: S,
+        group: &RegionGroup,
+        k: usize,
+        doubtful: &mut S::f64s,
+    ) -> Edges<S, EDGES> {
+        let cuts = if CUTS < MOST_CUTS { CUTS } else { group.cuts };
+        let corners = if CORNERS < MOST_CORNERS { CORNERS } else { group.corners };
+        let load = |row: &Row| S::as_simd_f64s(row).0[k];
+        let mut cuts = group.fields.iter().zip(&group.bounds).take(cuts);
+        let mut edges = match (CORNERS, CUTS) {
+            (3, 0) => Edges::<S, EDGES>::triangle(simd),
+            (3, _) => {
+                let (cut, bound) = cuts.next().expect("a group with cuts");
+                Edges::of_triangle(simd, &Form::of(simd, cut, k), load(bound))
+            }
+            _ => Edges::outline(simd, &group.outline[..corners], load),
+        };
+        for (cut, bound) in cuts {
+            edges.cut(simd, &Form::of(simd, cut, k), load(bound), doubtful);
+        }
+        edges
     }
 }
 
@@ -162,27 +180,28 @@ impl<S: Simd> Sums<S> {
 
 /// A linear form c₀ + c₁ ψ₁ + c₂ ψ₂.
 #[derive(Clone, Copy)]
-struct Form<S: Simd>([S::f64s; 3]);
+pub(super) struct Form<S: Simd>([S::f64s; 3]);
 
 impl<S: Simd> Form<S> {
-    /// The form with these values at the corners.
+    /// The form with the values at the corners of the k-th lanes.
     #[inline(always)]
-    fn through(simd: S, at: [S::f64s; 3]) -> Self {
-        Self([at[0], simd.sub_f64s(at[1], at[0]), simd.sub_f64s(at[2], at[0])])
+    pub(super) fn of(simd: S, at: &[Row; 3], k: usize) -> Self {
+        let [at0, at1, at2] = at.each_ref().map(|row| S::as_simd_f64s(row).0[k]);
+        Self([at0, simd.sub_f64s(at1, at0), simd.sub_f64s(at2, at0)])
     }
 
     #[inline(always)]
-    fn at(&self, simd: S, x: S::f64s, y: S::f64s) -> S::f64s {
+    pub(super) fn at(&self, simd: S, x: S::f64s, y: S::f64s) -> S::f64s {
         let Self([c0, c1, c2]) = *self;
         simd.add_f64s(c0, simd.add_f64s(simd.mul_f64s(c1, x), simd.mul_f64s(c2, y)))
     }
 }
 
 /// Directed edges in the plane (ψ₁, ψ₂); an edge without length is outside.
-struct Edges<S: Simd, const MOST: usize> {
-    x: [[S::f64s; 2]; MOST],
-    y: [[S::f64s; 2]; MOST],
-    len: usize,
+pub(super) struct Edges<S: Simd, const MOST: usize> {
+    pub(super) x: [[S::f64s; 2]; MOST],
+    pub(super) y: [[S::f64s; 2]; MOST],
+    pub(super) len: usize,
 }
 
 impl<S: Simd, const MOST: usize> Edges<S, MOST> {
@@ -275,7 +294,7 @@ impl<S: Simd, const MOST: usize> Edges<S, MOST> {
 
     /// An end of an edge that has a length.
     #[inline(always)]
-    fn apex(&self, simd: S) -> [S::f64s; 2] {
+    pub(super) fn apex(&self, simd: S) -> [S::f64s; 2] {
         let mut apex = [self.x[0][0], self.y[0][0]];
         for k in 1..self.len {
             let has_length = self.has_length(simd, k);

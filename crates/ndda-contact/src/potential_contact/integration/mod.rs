@@ -2,9 +2,10 @@
 
 mod affine_target;
 pub(crate) mod capacity;
-mod chunk_parts;
+pub(crate) mod chunk_parts;
 pub(crate) mod clip;
 pub(crate) mod double_double;
+pub(crate) mod fluxes;
 pub(crate) mod frames;
 pub(crate) mod function_moments;
 pub(crate) mod integrals;

@@ -183,11 +183,15 @@ pub(crate) fn pair_energy(triangle: &[Vec3; 3], area_vector: &Vec3, tet: &TetFra
     }
     let mut mean = 0.0;
     element_regions(&lambda, &[0.0; 4], |_, region| {
-        let (phi, part) = (Form::through(&region.phi), region.polygon(&Outline::TRIANGLE));
-        mean += part.fan().map(|(x, twice)| twice * mean_of_a(&x.map(|c| phi.at(&c)))).sum::<f64>();
+        mean += mean_flux(&region.polygon(&Outline::TRIANGLE), &Form::through(&region.phi));
     });
     // |n| dA and the height of the centroid in one product.
     mean * tet.centroid_distance(&triangle[0], area_vector)
+}
+
+/// ∫ a dA over a part of a triangle where φ is linear, over the triangle's area.
+pub(crate) fn mean_flux(part: &Polygon, phi: &Form) -> f64 {
+    part.fan().map(|(x, twice)| twice * mean_of_a(&x.map(|c| phi.at(&c)))).sum()
 }
 
 /// Mean of a over a triangle with linear φ. With p = Σφ, q = Σ φᵢφⱼ, r = φ₁φ₂φ₃:

@@ -6,7 +6,9 @@ use crate::integration::capacity::MOST_CORNERS;
 use crate::integration::clip::{Form, Outline, Polygon};
 use crate::integration::kernel::{GROUP, GroupMoments, RegionGroup, region_moments};
 use crate::integration::pair_moments::{PairMoments, RegionMoments};
-use crate::integration::region::{Cut, Pieces, Region, element_cuts, element_outside, is_somewhere};
+use crate::integration::region::{
+    Cut, Pieces, Region, count_cuts, element_cuts, element_outside, is_somewhere,
+};
 
 /// Contactors with so many corners or fewer wait together.
 const FEW_CORNERS: usize = 4;
@@ -81,13 +83,9 @@ impl RegionQueue {
         if !is_somewhere(&outside[i]) {
             return;
         }
-        let cuts = outside[i].iter().map(|n| usize::from(*n > 0)).sum::<usize>();
-        let batch = &mut self.waiting[cuts];
-        batch.group.cuts = cuts;
-        let lane = batch.lane();
-        element_cuts(lambda, outside, i, |k, cut| batch.set_cut(lane, k, &cut));
-        let [x, y, z] = lambda[i];
-        batch.set(lane, self.parts.len(), area_m2, &[4.0 * x, 4.0 * y, 4.0 * z], slope);
+        let cuts = count_cuts(&outside[i]);
+        let part = self.parts.len();
+        self.waiting[cuts].set_element(part, area_m2, (lambda, outside, i, slope), cuts);
         self.added(arch, pair, cuts);
     }
 
@@ -129,13 +127,29 @@ impl RegionQueue {
 
 /// One group while it fills.
 #[derive(Default)]
-struct Batch {
-    group: RegionGroup,
-    part: [usize; GROUP],
+pub(super) struct Batch {
+    pub(super) group: RegionGroup,
+    pub(super) part: [usize; GROUP],
     area: [f64; GROUP],
 }
 
 impl Batch {
+    /// Takes region i of the element potential on a triangle, which so many of its cuts cut.
+    #[inline(always)]
+    pub(super) fn set_element(
+        &mut self,
+        part: usize,
+        area_m2: f64,
+        (lambda, outside, i, slope): (&[[f64; 3]; 4], &[[u8; 4]; 4], usize, f64),
+        cuts: usize,
+    ) {
+        self.group.cuts = cuts;
+        let lane = self.lane();
+        element_cuts(lambda, outside, i, |k, cut| self.set_cut(lane, k, &cut));
+        let [x, y, z] = lambda[i];
+        self.set(lane, part, area_m2, &[4.0 * x, 4.0 * y, 4.0 * z], slope);
+    }
+
     /// Makes room for a region with so many cuts, of which those that it has not cut nothing.
     fn make_room(&mut self, cuts: usize) {
         let group = &mut self.group;
@@ -216,15 +230,21 @@ impl Batch {
         }
     }
 
-    /// A region that the lanes doubt.
-    fn in_order(&self, lane: usize, part: &mut RegionMoments) {
+    /// The rim of a region in order, and φ.
+    pub(super) fn ordered(&self, lane: usize) -> (Polygon, Form) {
         let group = &self.group;
         let form = |rows: &[[f64; GROUP]; 3]| Form::through(&rows.each_ref().map(|row| row[lane]));
         let cuts = group.fields.iter().zip(&group.bounds).take(group.cuts);
         let mut polygon = Polygon::all_of(&self.outline_of(lane));
         cuts.for_each(|(field, bound)| polygon.cut(&form(field), bound[lane]));
+        (polygon, form(&group.phi))
+    }
+
+    /// A region that the lanes doubt.
+    fn in_order(&self, lane: usize, part: &mut RegionMoments) {
+        let (polygon, phi) = self.ordered(lane);
         let mut moments = PairMoments::default();
-        moments.add(&polygon, &form(&group.phi), group.slope[lane], self.area[lane]);
+        moments.add(&polygon, &phi, self.group.slope[lane], self.area[lane]);
         (part.pressure, part.slope) = (moments.pressure, moments.slope);
         (part.area, part.depth) = (moments.area, moments.depth);
     }

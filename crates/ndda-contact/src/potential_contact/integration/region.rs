@@ -247,6 +247,12 @@ pub(crate) fn is_somewhere([a, b, c, d]: &[u8; 4]) -> bool {
     (*a != 3) & (*b != 3) & (*c != 3) & (*d != 3)
 }
 
+/// How many of the cuts of a region cut something, where one has not all corners outside.
+#[inline(always)]
+pub(crate) fn count_cuts(outside: &[u8; 4]) -> usize {
+    outside.iter().map(|n| usize::from(*n > 0)).sum()
+}
+
 /// The cuts of region i of the element potential that cut something: λ_i ≥ 0, and λ_j − λ_i; where λ_i = λ_j the
 /// smaller index has the point. Gives each its place and returns how many there are; a place may be given again, and
 /// the one after the last too: branch-free append, `len` advances only if it is active.

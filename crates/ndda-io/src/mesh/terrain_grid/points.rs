@@ -1,6 +1,6 @@
 //! Heights as points (x, y, z) of a regular grid, a line each, in any order.
 
-use super::{MOST_HEIGHTS, TerrainGrid};
+use super::{MOST_HEIGHTS, POINT, TerrainGrid, decimal_comma};
 use crate::mesh::error::{Fault, FileProblem};
 use crate::mesh::lines::{Lines, parse};
 
@@ -21,6 +21,11 @@ pub(super) fn read(bytes: &[u8]) -> Result<TerrainGrid, Fault> {
             continue;
         }
         let number = line.number;
+        // Three words and more need no commas between them.
+        let words = line.text.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).count();
+        if let Some(word) = decimal_comma(line.text).filter(|_| words >= 3) {
+            return Err(Fault::unexpected(number, POINT, word));
+        }
         let point = line.point()?;
         points.push((number, [point.x, point.y, point.z]));
     }
@@ -94,8 +99,9 @@ mod tests {
         let grid = read(text.as_bytes()).unwrap();
         assert_eq!((grid.origin_m, grid.step_m), ([10.0, 20.0], [1.0, 5.0]));
         assert_eq!(grid.heights_m, [vec![Some(1.0), Some(2.0), Some(3.0)], vec![Some(4.0), None, Some(6.0)]]);
-        let commas = text.replace(';', ",");
-        assert_eq!(read(commas.as_bytes()).unwrap(), grid);
+        for separator in [",", ", "] {
+            assert_eq!(read(text.replace(';', separator).as_bytes()).unwrap(), grid);
+        }
     }
 
     #[test]
@@ -107,6 +113,14 @@ mod tests {
             ("0 0 1\n1 0 1\n0 1 x\n", "a.xyz:3: expected a coordinate"),
             ("0 0 1\n1e-3 5e5 1\n1e6 1 1\n7 3.3 1", "gdal_grid"),
             ("0 0 1\n", "point 2 of at least 4"),
+            (
+                "0 0 1\n1 0 1,5",
+                "a.xyz:2: expected a number whose decimals come after a point, as 2.5, found `1,5`",
+            ),
+            (
+                "x;y;z\n0,5;0;1",
+                "a.xyz:2: expected a number whose decimals come after a point, as 2.5, found `0,5`",
+            ),
         ] {
             let message = error(text);
             assert!(message.contains(part), "{text}: {message}");

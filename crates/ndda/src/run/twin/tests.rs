@@ -1,0 +1,142 @@
+//! When runs are repeated, and what is found.
+
+use super::*;
+use crate::{Model, Run};
+
+/// A floor, and blocks above it.
+fn label(
+    gravity: &str,
+    (penalty_pa, step_s): (f64, f64),
+    blocks: &[&str],
+    sensitivity: Sensitivity,
+) -> Summary {
+    let block = |(name, more): (usize, &&str)| {
+        format!(
+            "(name: \"{name}\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), {more}),"
+        )
+    };
+    let blocks: String = blocks.iter().enumerate().map(block).collect();
+    let text = format!(
+        "(title: \"twins\", time: (step_s: {step_s:e}, end_s: 1.1), gravity_m_s2: {gravity},
+        materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: 2650)],
+        blocks: [(name: \"floor\", material: \"rock\", body: Fixed, shape: Box(size_m: (40, 20, 1), cells: (1, 1, 1)),
+            at_m: (-10, -10, -1)), {blocks}],
+        contact: Potential(penalty_pa: {penalty_pa:e}, potential: Smooth(), friction: (friction_deg: 25)))"
+    );
+    Run::new(Model::from_text(&text).unwrap()).sensitivity(sensitivity).finish(&mut []).unwrap().summary
+}
+
+const TUMBLING: [&str; 4] = [
+    "at_m: (0, 0, 0.5), spin_rad_s: (0.5, 0.2, 0)",
+    "at_m: (0.6, 0.1, 1.8), spin_rad_s: (1, 0, 0.3)",
+    "at_m: (-0.3, 0.4, 3.2), spin_rad_s: (0, 0.7, 0)",
+    "at_m: (0.2, -0.3, 4.6)",
+];
+
+#[test]
+fn cubes_that_tumble_over_each_other_are_sensitive_and_the_run_keeps_its_bits() {
+    let [with, without] = [Sensitivity::Auto, Sensitivity::Never]
+        .map(|sensitivity| label("(0, 0, -9.81)", (1e10, 5e-5), &TUMBLING, sensitivity));
+    assert_eq!(without.label.word, LabelWord::Accurate, "{:?}", without.label.reasons);
+    assert_eq!(with.label.word, LabelWord::Sensitive, "{:?}", with.label.reasons);
+    assert_eq!((with.state_crc32, with.verdicts), (without.state_crc32, without.verdicts));
+}
+
+#[test]
+fn cubes_that_slide_side_by_side_are_not_sensitive_though_they_part() {
+    let sliding = ["at_m: (0, 0, 0)", "at_m: (3, 0, 0)", "at_m: (0, 3, 0)"];
+    let summary = label("(5.5, 0, -8.1)", (2e9, 2e-4), &sliding, Sensitivity::Auto);
+    assert_eq!(summary.label.word, LabelWord::Accurate, "{:?}", summary.label.reasons);
+    assert!(summary.stages_s.0.iter().any(|(stage, _)| stage == "sensitivity"));
+}
+
+#[test]
+fn a_cube_that_hops_on_undamped_contact_is_sensitive_in_its_velocity_and_told_how_to_end_that() {
+    let text = "(title: \"pulled\", time: (step_s: 3e-5, end_s: 1), gravity_m_s2: (3.92, 0, -9.81),
+        materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.2, density_kg_m3: 2600)],
+        blocks: [
+            (name: \"floor\", material: \"rock\", body: Fixed, shape: Box(size_m: (4, 2, 0.5), cells: (1, 1, 1)), at_m: (0, 0, -0.5)),
+            (name: \"cube\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), at_m: (1, 0.5, 0)),
+        ],
+        contact: Potential(penalty_pa: 2e8, friction: (friction_deg: 35)))";
+    let summary = Run::new(Model::from_text(text).unwrap()).finish(&mut []).unwrap().summary;
+    let reason = summary.label.reasons.join("; ");
+    assert_eq!(summary.label.word, LabelWord::Sensitive, "{reason}");
+    assert!(reason.contains("with other velocities") && reason.contains("restitution of 0.5"), "{reason}");
+}
+
+#[test]
+fn an_elastic_block_whose_face_hops_while_it_slides_is_sensitive_although_one_twin_ends_near_it() {
+    let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../../scenes/extreme/elastic_block_stands.ron");
+    let set = ["gravity_ramp_s=0", "contact.penalty_pa=6e10", "output.frames=0"].map(String::from);
+    let summary = Run::new(Model::open(&file, &set).unwrap()).finish(&mut []).unwrap().summary;
+    assert_eq!(summary.label.word, LabelWord::Sensitive, "{:?}", summary.label.reasons);
+}
+
+#[test]
+fn a_stone_whose_impacts_have_grown_an_error_is_inaccurate_until_its_step_is_halved() {
+    let stone = |step_s: f64| {
+        let text = format!(
+            "(title: \"stone\", time: (step_s: {step_s:e}, end_s: 2), gravity_m_s2: (4.905, 0, -8.496),
+            materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: 2600)],
+            blocks: [
+                (name: \"slope\", material: \"rock\", body: Fixed, shape: Box(size_m: (60, 20, 1), cells: (1, 1, 1)), at_m: (-5, -10, -1)),
+                (name: \"stone\", material: \"rock\", body: Rigid,
+                    shape: Prism(outline_m: ((0, 0), (1, 0), (0.4, 0.8)), height_m: 0.7, cells: (1, 1)),
+                    turns: [(axis: (0.941, -0.234, 0.225), angle_deg: 110.73)], at_m: (0, 0, 1.88),
+                    velocity_m_s: (0.341, 0.105, 0), spin_rad_s: (1.441, -0.666, 0)),
+            ],
+            contact: Potential(penalty_pa: 1e10, potential: Smooth(), friction: (friction_deg: 60)))"
+        );
+        Run::new(Model::from_text(&text).unwrap()).finish(&mut []).unwrap().summary.label
+    };
+    let (long, short) = (stone(2e-4), stone(1e-4));
+    assert_eq!(long.word, LabelWord::Inaccurate, "{:?}", long.reasons);
+    assert!(long.reasons[0].contains("errors of impacts grow"), "{:?}", long.reasons);
+    assert_eq!(short.word, LabelWord::Accurate, "{:?}", short.reasons);
+}
+
+#[test]
+fn blocks_that_rounding_alone_moves_are_not_sensitive() {
+    let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/extreme/at_rest.ron");
+    let run = Run::new(Model::open(&file, &[]).unwrap()).sensitivity(Sensitivity::Always);
+    let summary = run.finish(&mut []).unwrap().summary;
+    assert_eq!(summary.label.word, LabelWord::Accurate, "{:?}", summary.label.reasons);
+}
+
+#[test]
+fn two_blocks_have_no_twin_unless_one_is_asked_for() {
+    let sliding = ["at_m: (0, 0, 0)"];
+    for (sensitivity, has_twin) in [(Sensitivity::Auto, false), (Sensitivity::Always, true)] {
+        let summary = label("(5.5, 0, -8.1)", (2e9, 2e-4), &sliding, sensitivity);
+        assert_eq!(summary.stages_s.0.iter().any(|(stage, _)| stage == "sensitivity"), has_twin);
+    }
+}
+
+/// Cubes on a prop that a stage takes away, above a ridge.
+fn undermined(sensitivity: Sensitivity) -> Summary {
+    let text = "(title: \"undermined\", time: (step_s: 5e-5, end_s: 0.01), gravity_m_s2: (0, 0, -9.81), settle: (),
+        materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: 2650)],
+        blocks: [
+            (name: \"floor\", material: \"rock\", body: Fixed, shape: Box(size_m: (40, 40, 1), cells: (1, 1, 1)), at_m: (-20, -20, -1)),
+            (name: \"ridge\", material: \"rock\", body: Fixed, shape: Box(size_m: (1, 9, 1), cells: (1, 1, 1)),
+                turns: [(axis: (0, 1, 0), angle_deg: 45)], at_m: (-0.7, -4, 0.7)),
+            (name: \"prop\", material: \"rock\", body: Fixed, shape: Box(size_m: (6, 6, 0.2), cells: (1, 1, 1)), at_m: (-3, -3, 1.6)),
+            (name: \"a\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), at_m: (-0.9, -0.7, 1.8)),
+            (name: \"b\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), at_m: (-0.5, -0.4, 2.8)),
+            (name: \"c\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), at_m: (-0.7, -0.6, 3.8)),
+            (name: \"d\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), at_m: (-0.4, -0.8, 4.8)),
+        ],
+        contact: Potential(penalty_pa: 1.5e10, potential: Smooth(), friction: (friction_deg: 25)),
+        stages: [(name: \"prop away\", remove: [\"prop\"], then: Run(1.6))])";
+    Run::new(Model::from_text(text).unwrap()).sensitivity(sensitivity).finish(&mut []).unwrap().summary
+}
+
+#[test]
+fn blocks_that_a_stage_lets_fall_are_sensitive_as_those_of_a_scene_without_stages_are() {
+    let [with, without] = [Sensitivity::Auto, Sensitivity::Never].map(undermined);
+    assert_eq!(without.label.word, LabelWord::Accurate, "{:?}", without.label.reasons);
+    assert_eq!(with.label.word, LabelWord::Sensitive, "{:?}", with.label.reasons);
+    assert_eq!((with.state_crc32, with.verdicts), (without.state_crc32, without.verdicts));
+}
