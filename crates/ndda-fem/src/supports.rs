@@ -228,14 +228,20 @@ impl BlockSupports {
         }
     }
 
-    /// Whether nodes are held, all in one place or by one motion, that leave no rotation. Springs give way, and motions that differ may turn the block.
+    /// Whether whole nodes are held, all in one place or by one motion, that leave no rotation: they do not lie on one line. Springs give way, and motions that
+    /// differ may turn the block.
     fn keeps_from_turning(&self, operator: &BlockOperator) -> bool {
         let Some(first) = self.held.first() else { return false };
         let motion_of = |node: &HeldNode| node.motion.map(|i| &self.motions[i]);
         let moves_alike =
             |node: &HeldNode| node.motion == first.motion || motion_of(node) == motion_of(first);
-        let holds: Vec<_> = self.held.iter().map(|node| (node.node, node.held.clone())).collect();
-        self.held.iter().all(moves_alike) && free_rotations(operator, &holds).is_empty()
+        let place = |node: &HeldNode| operator.rest[node.node as usize];
+        let arms = || self.held.iter().map(|node| place(node) - place(first));
+        let longer = |a: Vec3, b: Vec3| if b.norm_squared() > a.norm_squared() { b } else { a };
+        let Some(line) = arms().fold(Vec3::zeros(), longer).try_normalize(0.0) else { return false };
+        let off_line_m = arms().map(|arm| arm.cross(&line).norm()).fold(0.0, f64::max);
+        let size_m = operator.rest.iter().map(|x| x.norm()).fold(0.0, f64::max);
+        self.held.iter().all(moves_alike) && off_line_m > SAME_DIRECTION * size_m
     }
 
     /// Held directions per support, eliminated and sprung alike.

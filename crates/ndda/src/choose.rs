@@ -14,6 +14,7 @@
 //! hundredth of the run, a tenth of the ramp of gravity and of the shortest time between rows of loads, the time between two rows of a record,
 //! what waves want (`waves/steps.rs`), a tenth of the height of a tetrahedron at the largest initial speed, and a twentieth of a radian of rotation.
 
+mod loads;
 mod rounded;
 
 use std::path::Path;
@@ -335,15 +336,7 @@ fn step_of(
 ) -> Result<(Chosen, BlockSet), Vec<Fault>> {
     let end_s = scene.time.end_s;
     let mut limits = vec![(end_s / FEWEST_STEPS, "a hundredth of the run".to_string())];
-    if scene.gravity_ramp_s > 0.0 {
-        limits.push((scene.gravity_ramp_s / STEPS_OF_LOADS, "a tenth of gravity_ramp_s".into()));
-    }
-    let rows =
-        scene.tractions.iter().map(|load| &load.factor).chain(scene.forces.iter().map(|load| &load.factor));
-    let gaps = rows.flat_map(|rows| rows.windows(2).map(|pair| pair[1].time_s - pair[0].time_s));
-    if let Some(gap_s) = gaps.filter(|gap| *gap > 0.0).reduce(f64::min) {
-        limits.push((gap_s / STEPS_OF_LOADS, "a tenth of the time between two rows of a load".into()));
-    }
+    limits.extend(loads::limits(scene, sizes.block_m, sizes.density_kg_m3));
     if sizes.speed_m_s > 0.0 && sizes.height_m.is_finite() {
         let way_s = WAY * sizes.height_m / sizes.speed_m_s;
         limits.push((way_s, "blocks move by a tenth of the height of a tetrahedron in one step".into()));

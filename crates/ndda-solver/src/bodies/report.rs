@@ -47,7 +47,7 @@ pub(crate) struct BlockReport {
 
 impl BlockReport {
     /// Everything in it, in one order.
-    fn parts(&mut self) -> ([&mut Vec3; 17], [&mut f64; 11], [&mut bool; 3]) {
+    fn parts(&mut self) -> ([&mut Vec3; 17], [&mut f64; 11], [&mut bool; 4]) {
         let Self {
             reaction,
             outside_torque,
@@ -76,6 +76,7 @@ impl BlockReport {
             pressed_m_s2,
             turn_m_s2,
             is_held,
+            is_clamped,
             touches,
             speed_m_s: fastest_m_s,
             has_friction,
@@ -101,7 +102,7 @@ impl BlockReport {
             drive_rate2,
         ];
         let vectors = std::array::from_fn(|_| vectors.next().expect("seventeen of them"));
-        (vectors, numbers, [is_held, touches, has_friction])
+        (vectors, numbers, [is_held, is_clamped, touches, has_friction])
     }
 
     /// Hands it to another rank.
@@ -134,7 +135,7 @@ impl BlockReport {
 pub(crate) struct RigidForcing {
     /// Force of loads over its mass [m/s²].
     pub load_m_s2: Vec3,
-    /// Acceleration of translation by loads, contact and supports [m/s²].
+    /// Acceleration of translation by loads, contact and supports, relative to that of the supports [m/s²].
     pub shift_m_s2: Vec3,
     /// Change of velocity in the step by damping in proportion to mass, and by prescribed velocities [m/s].
     pub damped_m_s: Vec3,
@@ -145,6 +146,8 @@ pub(crate) struct RigidForcing {
     pub turn_m_s2: Vec3,
     /// Whether contact or supports act on it.
     pub is_held: bool,
+    /// Whether supports hold a place of it, or springs pull one back.
+    pub is_clamped: bool,
     /// Whether contact does.
     pub touches: bool,
     /// Speed of its fastest node [m/s].

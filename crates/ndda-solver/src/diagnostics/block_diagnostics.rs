@@ -23,6 +23,9 @@ use crate::diagnostics::many::each_of_many;
 use crate::diagnostics::rebound::Rebound;
 use crate::diagnostics::ringing::{Quadrature, Ringing};
 
+/// Vibrations of this part of the strain of a block that supports hold leave it at rest.
+const AT_REST: f64 = 0.01;
+
 /// Part of ½ m V² that an error of V/100 is measured by where blocks meet at next to no speed: m v δv + ½ m δv².
 const SLOW: f64 = 0.005;
 
@@ -204,12 +207,13 @@ impl BlockDiagnostics {
     }
 
     /// Square of the speed at which a block would have the elastic energy that it began with or, where vibrations die out, that it has
-    /// now [m²/s²].
+    /// now [m²/s²]. In a block that supports alone hold, that energy never becomes motion: a hundredth of the speed counts.
     pub(crate) fn strain_speed2(&self, block: BlockId, die_out: bool) -> f64 {
         let (balance, scale) = (&self.balances[block.index()], &self.scales[block.index()]);
         let borne_j =
             if die_out { balance.strain_start_j.max(balance.strain_j) } else { balance.strain_start_j };
-        2.0 * borne_j / scale.mass_kg
+        let part = if balance.ringing.is_clamped() { AT_REST * AT_REST } else { 1.0 };
+        2.0 * part * borne_j / scale.mass_kg
     }
 
     /// Records how far a block's rotation lags, `since_s` after the last sample, at a spin [rad/s] and a rate [rad/s] now.

@@ -190,6 +190,11 @@ impl Ledger {
         self.largest_speed_m_s.max(self.slow_m_s)
     }
 
+    /// Speed below which a block that supports alone hold is at rest; zero for others [m/s].
+    pub(crate) fn rest_speed_m_s(&self, block: BlockId) -> f64 {
+        self.blocks.rest_speed_m_s(block)
+    }
+
     /// Keeps the largest speed at which overlaps as drawn throw a block [m/s].
     pub(crate) fn note_drawn_overlaps(&mut self, thrown: Worst) {
         self.worst.drawn_overlap_m_s = thrown;

@@ -10,7 +10,7 @@
 //! that changes more. Supports and elasticity act by their mean over a step without jumps: Δt |Δ²F|/12, π/2 times that where
 //! the error has its maximum rather than in the mean, and more at the end of a beam than at its mass centre.
 //!
-//! In a collision without friction these errors cancel: the force begins and ends at zero, and what is left is an error of
+//! In a collision without friction these errors cancel, not so on supports: the force begins and ends at zero, and what is left is an error of
 //! energy, which is judged by itself (`block_diagnostics.rs`). They add up where a force has more than one maximum before the block
 //! is free again, and where friction makes of the history of a force a velocity that stays. While a block vibrates, the error
 //! is at most twice the speed of its vibration, which is all wrong in phase then.
@@ -24,6 +24,7 @@ use serde::{Deserialize, Serialize};
 use crate::bodies::context::StepContext;
 use crate::bodies::kind::BodyKind;
 use crate::bodies::prototype::Prototype;
+use crate::bodies::record::end_velocity;
 use crate::bodies::report::BlockReport;
 
 /// Largest ratio of the speed of a supported block's fastest node to that of its mass centre that is reckoned with: 2.6 for the first mode of a beam
@@ -57,11 +58,7 @@ impl RigidForcing {
         }
         let operator = &shape.operator;
         let load: Vec3 = context.external.iter().sum();
-        let mut force: Vec3 = context.force.iter().sum();
-        // Prescribed motions of supports are exact, jumps of velocities included.
-        if shape.supports.motions.is_empty() {
-            force += report.reaction;
-        }
+        let force = context.force.iter().sum::<Vec3>() + report.reaction;
         let mut turn_m_s2 = Vec3::zeros();
         if shape.is_free() {
             let center = operator.center(context.contact_position);
@@ -78,16 +75,43 @@ impl RigidForcing {
         Self {
             pressed_m_s2: pressed_n / operator.mass_kg,
             load_m_s2: load / operator.mass_kg,
-            shift_m_s2: force / operator.mass_kg,
+            shift_m_s2: force / operator.mass_kg - support_acceleration(shape, context),
             damped_m_s: report.impulse / operator.mass_kg,
             turn_m_s2,
             is_held,
+            is_clamped: !shape.supports.held.is_empty() || !shape.supports.springs.is_empty(),
             touches,
             speed_m_s: report.speed_m_s,
             has_friction: context.friction_force.iter().any(|f| *f != Vec3::zeros()),
             contact_rate2: report.contact_rate2,
         }
     }
+}
+
+/// Mean acceleration of what holds a block, direction by direction [m/s²]: prescribed motions are exact, jumps included, and blocks are judged beside them.
+fn support_acceleration(shape: &Prototype, context: &StepContext) -> Vec3 {
+    if shape.supports.motions.is_empty() || context.end_s <= context.time_s {
+        return Vec3::zeros();
+    }
+    let dt_s = context.end_s - context.time_s;
+    let velocity = |motion, time_s| end_velocity(shape, motion, (time_s - dt_s, time_s));
+    let change = |motion| velocity(motion, context.end_s) - velocity(motion, context.time_s);
+    let (mut sum, mut weight) = (Vec3::zeros(), Vec3::zeros());
+    let mut last = (None, Vec3::zeros());
+    for held in &shape.supports.held {
+        if held.motion != last.0 {
+            last = (held.motion, change(held.motion));
+        }
+        for n in &held.held {
+            sum += n * n.dot(&last.1);
+            weight += n.component_mul(n);
+        }
+    }
+    for spring in shape.supports.springs.iter().filter(|spring| spring.motion.is_some()) {
+        sum += change(spring.motion);
+        weight += Vec3::repeat(1.0);
+    }
+    sum.zip_map(&weight, |sum, weight| if weight > 0.0 { sum / (weight * dt_s) } else { 0.0 })
 }
 
 /// How a step takes forces.
@@ -120,6 +144,8 @@ pub(crate) struct Ringing {
     maxima: u32,
     has_friction: bool,
     is_held: bool,
+    /// Whether supports alone held places of the block in the last step.
+    is_clamped: bool,
     /// Whether the last step was the first of all.
     was_first: bool,
     /// Fastest node since contact began [m/s].
@@ -172,11 +198,20 @@ impl Ringing {
             };
         // Taken at one end of a step, forces of contact leave errors of first order until the block is free again.
         let is_over = !step.is_one_sided || step.judges_pairs && !drive.touches;
-        let cancels = self.maxima <= 1 && !self.has_friction && is_over;
-        let most_m_s = if step.is_one_sided { MOST_ONE_SIDED * self.fastest_m_s } else { f64::INFINITY };
+        let is_clamped = only_supported && drive.is_clamped;
+        let cancels = self.maxima <= 1 && !self.has_friction && is_over && !is_clamped;
+        let most_m_s = if is_clamped && step.elastic_lag > 0.0 {
+            // What is left of vibrations that the scheme damps.
+            drive.speed_m_s
+        } else if step.is_one_sided && !is_clamped {
+            MOST_ONE_SIDED * self.fastest_m_s
+        } else {
+            f64::INFINITY
+        };
         let new_m_s = if cancels { 0.0 } else { self.now_m_s.min(most_m_s) };
         self.error_m_s = (self.past_m_s + new_m_s).min(self.bound_m_s(step, only_supported));
         (self.last, self.change, self.is_held) = (now, change, drive.is_held);
+        self.is_clamped = is_clamped;
         self.pressed_m_s2 = drive.pressed_m_s2;
         if !drive.is_held {
             *self = Self { past_m_s: self.error_m_s, error_m_s: self.error_m_s, ..Self::default() };
@@ -212,13 +247,17 @@ impl Ringing {
     /// Most that a vibration may be wrong; there is no limit while forces are one-sided, which damp or feed vibrations.
     fn bound_m_s(&self, step: &Quadrature, only_supported: bool) -> f64 {
         let is_bounded = (only_supported || !step.is_one_sided) && self.maxima > 1 && self.second2 > 0.0;
-        if is_bounded && only_supported && self.second2 > ALTERNATES * self.first2 {
-            0.25 * step.dt_s * (self.first2 / self.weight).sqrt()
-        } else if is_bounded {
-            2.0 * self.vibration_m_s(step)
-        } else {
-            f64::INFINITY
+        let alternates = only_supported && self.second2 > ALTERNATES * self.first2;
+        match (is_bounded, alternates) {
+            (false, _) => f64::INFINITY,
+            (true, true) => 0.25 * step.dt_s * (self.first2 / self.weight).sqrt(),
+            (true, false) => 2.0 * self.vibration_m_s(step),
         }
+    }
+
+    /// Whether supports alone held places of the block in the last step.
+    pub(crate) fn is_clamped(&self) -> bool {
+        self.is_clamped
     }
 
     /// Error of the velocity now [m/s].

@@ -155,6 +155,11 @@ impl Simulation {
         self.audit.ledger.speed_scale_m_s()
     }
 
+    /// Speed below which a block that supports alone hold is at rest: that of vibrations of a hundredth of its strain; zero for others [m/s].
+    pub fn rest_speed_m_s(&self, block: BlockId) -> f64 {
+        self.audit.ledger.rest_speed_m_s(block)
+    }
+
     /// Speed that a block has if all energy which rounding may have brought by now is its own [m/s].
     pub fn rounding_speed_m_s(&self, block: BlockId) -> f64 {
         (2.0 * self.audit.ledger.rounding_j() / self.shape(block).operator.mass_kg).sqrt()

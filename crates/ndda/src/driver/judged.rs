@@ -75,11 +75,11 @@ impl Driver {
 
     /// The simulation's label so far: a sample is taken first, so that nothing since the last one is missed.
     ///
-    /// After the last step the label is that of a run: where blocks hit several times or disturb each other, the steps of an accurate scene are taken
+    /// After the last step the label is that of a run: where blocks hit several times or disturb each other, and where there is no contact, the steps of an accurate scene are taken
     /// again, from a slightly different start or with half the step. The result is kept until the next step. They cannot be taken again after
     /// [`set_force`](Self::set_force), [`set_velocity`](Self::set_velocity) or a [`change`](Self::change) of what acts on blocks, nor with parts of the
     /// caller's own: where a run would have been repeated, the reasons then say that it was not, and the word is `Inaccurate` if that was to be with half
-    /// the step, since errors of impacts may have grown. Before the last step, the label judges the steps that were taken.
+    /// the step after impacts, whose errors may have grown. Before the last step, the label judges the steps that were taken.
     pub fn label(&mut self) -> Label {
         self.label_watched(&AtomicBool::new(false), &|_| {})
     }
@@ -97,7 +97,7 @@ impl Driver {
         let twins = Sensitivity::Auto.twins(&self.model.simulation);
         let other = match self.why_not_again() {
             _ if twins.is_empty() => None,
-            Some(why) => Some(unrepeated(&twins, &why)),
+            Some(why) => Some(unrepeated(&twins, &why, self.model.simulation.has_contact())),
             None => self.repeated(&twins, stop, tell),
         };
         let label = other.unwrap_or(label);
@@ -120,15 +120,15 @@ impl Driver {
 
     /// The label of an accurate scene whose steps, taken again, end elsewhere.
     fn repeated(&mut self, twins: &[Twin], stop: &AtomicBool, tell: &dyn Fn(&str)) -> Option<Label> {
-        tell(&twin::told(twins));
+        tell(&twin::told(twins, self.model.simulation.has_contact()));
         let settle = self.model.loaded.scene.settle.map(crate::build::settle);
         let again = Again::FromStart { start: &self.course.built, settle };
         twin::label_of_twins(&mut self.model.simulation, &again, twins, stop)
     }
 }
 
-/// The label of an accurate scene whose steps would be taken again, were it not for what `why` says.
-fn unrepeated(twins: &[Twin], why: &str) -> Label {
+/// The label of an accurate scene, with or without contact, whose steps would be taken again, were it not for what `why` says.
+fn unrepeated(twins: &[Twin], why: &str, has_contact: bool) -> Label {
     let (pushed, halved) =
         (twins.iter().any(|&twin| twin != Twin::HalfStep), twins.contains(&Twin::HalfStep));
     let (how, unknown) = match (pushed, halved) {
@@ -137,6 +137,7 @@ fn unrepeated(twins: &[Twin], why: &str) -> Label {
             "whether the motion is sensitive, and whether errors of impacts grow, is not known",
         ),
         (true, false) => ("from a slightly different start", "whether the motion is sensitive is not known"),
+        (false, _) if !has_contact => ("with half the step", "whether it is short enough is not known"),
         (false, _) => ("with half the step", "whether errors of impacts grow is not known"),
     };
     let cure = match halved {
@@ -144,7 +145,7 @@ fn unrepeated(twins: &[Twin], why: &str) -> Label {
         false => "begin with velocities that differ by 1e-4 of the largest, and compare",
     };
     let reason = format!("the run was not repeated {how}, since {why}: {unknown}; {cure}");
-    let word = if halved { LabelWord::Inaccurate } else { LabelWord::Accurate };
+    let word = if halved && has_contact { LabelWord::Inaccurate } else { LabelWord::Accurate };
     Label { word, reasons: vec![reason] }
 }
 
@@ -225,7 +226,7 @@ mod tests {
 
     #[test]
     fn the_repetition_that_is_left_out_decides_what_is_not_known() {
-        let label = |twins: &[Twin]| unrepeated(twins, "a force was set at t = 1 s");
+        let label = |twins: &[Twin]| unrepeated(twins, "a force was set at t = 1 s", true);
         let (pushed, both) = (label(&[Twin::Push(1.0)]), label(&[Twin::Push(1.0), Twin::HalfStep]));
         assert_eq!((pushed.word, both.word), (LabelWord::Accurate, LabelWord::Inaccurate));
         assert!(

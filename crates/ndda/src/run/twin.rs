@@ -29,11 +29,11 @@ use parted::{farthest_m, height_m, parted};
 /// Whether twins of the run are run after it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Sensitivity {
-    /// After an accurate run in which three or more blocks have moved, or two that end beside each other, or in which one has hopped several times with
-    /// friction in between, or hit twice or more.
+    /// After an accurate run without contact, or in which three or more blocks have moved, or two that end beside each other, or in which one has hopped several
+    /// times with friction in between, or hit twice or more.
     #[default]
     Auto,
-    /// After each accurate run with contact.
+    /// After each accurate run.
     Always,
     /// Not at all.
     Never,
@@ -57,7 +57,8 @@ impl FromStr for Sensitivity {
 pub(crate) enum Twin {
     /// Its velocities at the start, by so many ten-thousandths of the largest speed.
     Push(f64),
-    /// Its step, which is half as long: its errors are half of those of the run where friction acts in impacts, a quarter elsewhere.
+    /// Its step, which is half as long: its errors are half of those of the run where friction acts in impacts or the scheme is of first order, a quarter
+    /// elsewhere.
     HalfStep,
 }
 
@@ -81,9 +82,13 @@ pub(crate) fn may_want_twin(simulation: &Simulation) -> bool {
     simulation.has_contact() && free.take(ENOUGH).count() == ENOUGH
 }
 
-/// Whether a run that begins here makes a twin with half the step, by default, if a block hits several times.
+/// Whether a run that begins here makes a twin with half the step, by default: without contact always, else if a block hits several times.
 pub(crate) fn may_want_half_step(simulation: &Simulation) -> bool {
-    simulation.has_contact() && simulation.blocks().ids().any(|block| moves(simulation, block))
+    let may_move = |block| match simulation.has_contact() {
+        true => moves(simulation, block),
+        false => simulation.shape(block).kind != BodyKind::Fixed,
+    };
+    simulation.blocks().ids().any(may_move)
 }
 
 impl Sensitivity {
@@ -99,8 +104,9 @@ impl Sensitivity {
         };
         let hops = hops(simulation);
         let (pushes, halves) = match self {
-            _ if !simulation.has_contact() => (false, false),
             Self::Never => (false, false),
+            // Nothing makes small differences grow without bound, but nothing else says whether a step resolves how loads change with places.
+            _ if !simulation.has_contact() => (false, may_want_half_step(simulation)),
             Self::Always => {
                 let any = ids().any(|block| moves(simulation, block));
                 (any, any)
@@ -120,12 +126,13 @@ impl Sensitivity {
     }
 }
 
-/// The line that announces repetitions of a run.
-pub(crate) fn told(twins: &[Twin]) -> String {
+/// The line that announces repetitions of a run, with or without contact.
+pub(crate) fn told(twins: &[Twin], has_contact: bool) -> String {
     let pushed = "velocities changed by 1e-4 of the largest speed";
     let by = match (twins.contains(&PUSHES[0]), twins.contains(&Twin::HalfStep)) {
         (true, true) => format!("{pushed}, then with half the step"),
         (true, false) => pushed.into(),
+        (false, _) if !has_contact => "half the step".into(),
         (false, _) => "half the step, since blocks have hit several times".into(),
     };
     format!(
@@ -213,7 +220,10 @@ fn part(
         Again::ThroughStages { loaded, .. } => 1 + loaded.scene.stages.len(),
     };
     let scale_m_s = simulation.speed_scale_m_s();
-    let drift_m = DRIFTS * PUSH * pushes as f64 * scale_m_s * simulation.time_s();
+    let drift_m = match simulation.has_contact() {
+        true => DRIFTS * PUSH * pushes as f64 * scale_m_s * simulation.time_s(),
+        false => 0.0,
+    };
     for &twin in twins {
         let ended = match again {
             Again::FromStart { start, settle } => {

@@ -1,5 +1,7 @@
 //! The worst hops, rebounds and ringing of all blocks.
 
+use ndda_mesh::BlockId;
+
 use super::{BlockBalance, BlockDiagnostics};
 use crate::diagnostics::worst::Worst;
 
@@ -47,9 +49,24 @@ impl BlockDiagnostics {
         (worst(|balance| balance.rebound.gained_m_s()), worst(|balance| balance.rebound.across_m_s()))
     }
 
-    /// Largest error of a velocity for ringing, over a speed; what rounding may have done does not count.
+    /// Largest error of a velocity for ringing, over a speed or that below which a block is at rest; what rounding may have done does not count.
     pub(crate) fn ringing(&self, speed_m_s: f64, rounding_j: f64) -> Worst {
-        self.worst_speed(speed_m_s, rounding_j, |balance| balance.ringing.error_m_s())
+        let mut worst = Worst::default();
+        for (block, (balance, scale)) in self.balances.iter().zip(&self.scales).enumerate() {
+            let own_m_s = balance.ringing.error_m_s();
+            if 0.5 * scale.mass_kg * own_m_s * own_m_s > rounding_j {
+                worst.take(own_m_s / speed_m_s.max(self.rest_speed_m_s(BlockId(block as u32))), block);
+            }
+        }
+        worst
+    }
+
+    /// Speed below which a block that supports alone hold is at rest: that of vibrations of a hundredth of its strain; zero for others [m/s].
+    pub(crate) fn rest_speed_m_s(&self, block: BlockId) -> f64 {
+        match self.balances[block.index()].ringing.is_clamped() {
+            true => self.strain_speed2(block, true).sqrt(),
+            false => 0.0,
+        }
     }
 
     /// Largest of a speed [m/s] of each block over another, where its kinetic energy is more than rounding.

@@ -35,6 +35,8 @@ pub(crate) struct Parted {
     times: f64,
     /// Whether a block hopped many times with friction in between.
     hops: bool,
+    /// Whether blocks may touch.
+    has_contact: bool,
 }
 
 impl Parted {
@@ -58,7 +60,8 @@ impl fmt::Display for Parted {
         let Twin::Push(_) = self.twin else {
             return write!(
                 f,
-                "a run with half the step ends {ends}, since errors of impacts grow in later ones: {many}, `{block}` by {by}; divide step_s by {}",
+                "a run with half the step ends {ends}{}: {many}, `{block}` by {by}; divide step_s by {}",
+                if self.has_contact { ", since errors of impacts grow in later ones" } else { "" },
                 self.times.ceil().clamp(2.0, MOST)
             );
         };
@@ -94,7 +97,8 @@ pub(super) fn parted(
         let apart_m = farthest_m(simulation, block, &state.position, &ended.0);
         let faster_m_s = faster_m_s(simulation, block, (&state.position, &state.velocity), ended);
         let place = apart_m / (away * height_m(simulation, block) + drift_m);
-        let allowed_m_s = faster * largest_m_s + simulation.rounding_speed_m_s(block);
+        let scale_m_s = largest_m_s.max(simulation.rest_speed_m_s(block));
+        let allowed_m_s = faster * scale_m_s + simulation.rounding_speed_m_s(block);
         let speed = if apart_m > drift_m { faster_m_s / allowed_m_s } else { 0.0 };
         Difference { block, apart_m, faster_m_s, place, speed }
     };
@@ -111,6 +115,7 @@ pub(super) fn parted(
         blocks: all.iter().filter(|one| over(one) > 1.0).count(),
         times: over(worst),
         hops: hops(simulation),
+        has_contact: simulation.has_contact(),
     })
 }
 
