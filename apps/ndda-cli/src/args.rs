@@ -304,7 +304,7 @@ pub struct HowArgs {
     #[arg(long)]
     pub strict: bool,
     /// After an accurate run, run the scene again, from a slightly different start or with half the step, to see whether the result changes: auto (where
-    /// several blocks move, or one hops or hits several times), always or never. It takes as long as the first run, or twice as long.
+    /// several blocks move, one hops or hits several times, nothing can touch, or the run was short), always or never. It takes as long as the first, or twice as long.
     #[arg(long, value_name = "WHEN", default_value = "auto")]
     pub sensitivity: Sensitivity,
     /// Print nothing but errors.

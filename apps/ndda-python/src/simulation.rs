@@ -262,8 +262,8 @@ impl Simulation {
 
     /// The label: `accurate`, `inaccurate`, `sensitive` or `stopped`.
     ///
-    /// After the last step it is that of `ndda run`, which runs some scenes again: where blocks hit several times or disturb each
-    /// other, this takes as long as the run, once. After forces, velocities or changes of what acts on blocks, and with a law of
+    /// After the last step it is that of `ndda run`, which runs some scenes again: where blocks hit several times, disturb each
+    /// other or cannot touch, and where steps are few, this takes as long as the run or twice as long, once. After forces, velocities or changes of what acts on blocks, and with a law of
     /// one's own, steps cannot be taken again: where blocks hit several times, the label is then `inaccurate`, since errors of
     /// impacts may have grown. Before the last step, it judges the steps that were taken.
     ///

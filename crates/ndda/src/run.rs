@@ -302,7 +302,7 @@ impl Run {
             false => Some(Again::ThroughStages { loaded: &loaded, folder: &beside, stop: &stop }),
         };
         if let Some(again) = again.filter(|_| !twins.is_empty()) {
-            tell(&twin::told(&twins, simulation.has_contact()));
+            tell(&twin::told(&twins, &simulation));
             twin::judge(&mut summary, &mut simulation, (&again, &twins), (&stop, self.strict));
         }
         if let (Some(folder), Some(log)) = (folder, &mut log) {

@@ -47,10 +47,9 @@ impl PotentialContact {
         self.find_pairs(input)?;
         let Some((_, field)) = &self.field else { return Ok(()) };
         let (blocks, position) = (input.blocks, input.position);
-        let (candidates, frames, hulls) = (&self.candidates, &self.frames, &self.hulls);
-        let openings = &self.openings;
+        let Self { candidates, frames, hulls, openings, integrals, .. } = self;
         let scene = Scene { blocks, position, candidates, frames, field, hulls, openings };
-        Ok(self.integrals.update(&scene, input.ranks)?)
+        Ok(integrals.update(&scene, input.ranks)?)
     }
 
     /// Candidate pairs at `input.position`, and frames of their tetrahedra.

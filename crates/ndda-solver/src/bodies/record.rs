@@ -106,6 +106,32 @@ pub(crate) fn end_velocity(shape: &Prototype, motion: Option<usize>, (start_s, e
     motion.filter(|_| moves).map_or(Vec3::zeros(), |m| shape.supports.motions[m].velocity(at_s))
 }
 
+/// Mean acceleration of what holds a block, direction by direction [m/s²]: prescribed motions are exact, jumps included, and blocks are judged beside them.
+pub(crate) fn support_acceleration(shape: &Prototype, context: &StepContext) -> Vec3 {
+    if shape.supports.motions.is_empty() || context.end_s <= context.time_s {
+        return Vec3::zeros();
+    }
+    let dt_s = context.end_s - context.time_s;
+    let velocity = |motion, time_s| end_velocity(shape, motion, (time_s - dt_s, time_s));
+    let change = |motion| velocity(motion, context.end_s) - velocity(motion, context.time_s);
+    let (mut sum, mut weight) = (Vec3::zeros(), Vec3::zeros());
+    let mut last = (None, Vec3::zeros());
+    for held in &shape.supports.held {
+        if held.motion != last.0 {
+            last = (held.motion, change(held.motion));
+        }
+        for n in &held.held {
+            sum += n * n.dot(&last.1);
+            weight += n.component_mul(n);
+        }
+    }
+    for spring in shape.supports.springs.iter().filter(|spring| spring.motion.is_some()) {
+        sum += change(spring.motion);
+        weight += Vec3::repeat(1.0);
+    }
+    sum.zip_map(&weight, |sum, weight| if weight > 0.0 { sum / (weight * dt_s) } else { 0.0 })
+}
+
 /// Displacement of a prescribed motion, zero where there is none [m].
 pub(crate) fn displacement_at(shape: &Prototype, motion: Option<usize>, time_s: f64) -> Vec3 {
     motion.map_or(Vec3::zeros(), |m| shape.supports.motions[m].displacement(time_s))

@@ -24,7 +24,7 @@ use serde::{Deserialize, Serialize};
 use crate::bodies::context::StepContext;
 use crate::bodies::kind::BodyKind;
 use crate::bodies::prototype::Prototype;
-use crate::bodies::record::end_velocity;
+use crate::bodies::record::support_acceleration;
 use crate::bodies::report::BlockReport;
 
 /// Largest ratio of the speed of a supported block's fastest node to that of its mass centre that is reckoned with: 2.6 for the first mode of a beam
@@ -88,32 +88,6 @@ impl RigidForcing {
     }
 }
 
-/// Mean acceleration of what holds a block, direction by direction [m/s²]: prescribed motions are exact, jumps included, and blocks are judged beside them.
-fn support_acceleration(shape: &Prototype, context: &StepContext) -> Vec3 {
-    if shape.supports.motions.is_empty() || context.end_s <= context.time_s {
-        return Vec3::zeros();
-    }
-    let dt_s = context.end_s - context.time_s;
-    let velocity = |motion, time_s| end_velocity(shape, motion, (time_s - dt_s, time_s));
-    let change = |motion| velocity(motion, context.end_s) - velocity(motion, context.time_s);
-    let (mut sum, mut weight) = (Vec3::zeros(), Vec3::zeros());
-    let mut last = (None, Vec3::zeros());
-    for held in &shape.supports.held {
-        if held.motion != last.0 {
-            last = (held.motion, change(held.motion));
-        }
-        for n in &held.held {
-            sum += n * n.dot(&last.1);
-            weight += n.component_mul(n);
-        }
-    }
-    for spring in shape.supports.springs.iter().filter(|spring| spring.motion.is_some()) {
-        sum += change(spring.motion);
-        weight += Vec3::repeat(1.0);
-    }
-    sum.zip_map(&weight, |sum, weight| if weight > 0.0 { sum / (weight * dt_s) } else { 0.0 })
-}
-
 /// How a step takes forces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Quadrature {
@@ -144,7 +118,8 @@ pub(crate) struct Ringing {
     maxima: u32,
     has_friction: bool,
     is_held: bool,
-    /// Whether supports alone held places of the block in the last step.
+    /// Whether contact has acted on it, and whether only supports have, which held places of it in the last step.
+    has_touched: bool,
     is_clamped: bool,
     /// Whether the last step was the first of all.
     was_first: bool,
@@ -198,7 +173,8 @@ impl Ringing {
             };
         // Taken at one end of a step, forces of contact leave errors of first order until the block is free again.
         let is_over = !step.is_one_sided || step.judges_pairs && !drive.touches;
-        let is_clamped = only_supported && drive.is_clamped;
+        self.has_touched |= drive.touches;
+        let is_clamped = drive.is_clamped && !self.has_touched;
         let cancels = self.maxima <= 1 && !self.has_friction && is_over && !is_clamped;
         let most_m_s = if is_clamped && step.elastic_lag > 0.0 {
             // What is left of vibrations that the scheme damps.
@@ -231,7 +207,9 @@ impl Ringing {
     /// Speed of the fastest node over that of the vibration of the mass centre.
     fn outer_over_mean(&self, step: &Quadrature) -> f64 {
         let mean_m_s = self.vibration_m_s(step);
-        if mean_m_s > 0.0 { (self.fastest_m_s / mean_m_s).clamp(1.0, END_OF_A_BEAM) } else { 1.0 }
+        // Before the first maximum, the mean is not known.
+        let is_known = mean_m_s > 0.0 && self.maxima > 0;
+        if is_known { (self.fastest_m_s / mean_m_s).clamp(1.0, END_OF_A_BEAM) } else { 1.0 }
     }
 
     /// Speed of a vibration: an acceleration of amplitude a that turns by θ in a step has |Δa| = θ a and |Δ²a| = θ² a, √½ of that
@@ -255,7 +233,7 @@ impl Ringing {
         }
     }
 
-    /// Whether supports alone held places of the block in the last step.
+    /// Whether nothing but supports, which held places of the block in the last step, has ever held it.
     pub(crate) fn is_clamped(&self) -> bool {
         self.is_clamped
     }

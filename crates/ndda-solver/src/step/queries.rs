@@ -155,6 +155,11 @@ impl Simulation {
         self.audit.ledger.speed_scale_m_s()
     }
 
+    /// Whether errors of steps without contact fall with the square of the step.
+    pub fn is_of_second_order(&self) -> bool {
+        self.weights.elastic_lag() == 0.0
+    }
+
     /// Speed below which a block that supports alone hold is at rest: that of vibrations of a hundredth of its strain; zero for others [m/s].
     pub fn rest_speed_m_s(&self, block: BlockId) -> f64 {
         self.audit.ledger.rest_speed_m_s(block)

@@ -130,6 +130,7 @@ mod tests {
     use super::*;
     use crate::Model;
     use crate::driver::EXAMPLE;
+    use crate::summary::LabelWord;
 
     fn fall(more: &str) -> Driver {
         let text = EXAMPLE.1.replace("contact: Off,", more).replace("body: Rigid, ", "");
@@ -147,7 +148,7 @@ mod tests {
         let work_j = 2.0 * 2600.0 * 9.81 * (0.5 * 9.81 * 0.25);
         assert!((sample.load_work_j - work_j).abs() < 1e-9 * work_j, "{}", sample.load_work_j);
         assert!(sample.kinetic_j < 1e-12 * work_j && sample.balance_j.abs() < 1e-9 * work_j);
-        assert_eq!(driver.label().reasons, Vec::<String>::new());
+        assert_eq!(driver.label().word, LabelWord::Accurate);
     }
 
     #[test]

@@ -97,7 +97,7 @@ impl Driver {
         let twins = Sensitivity::Auto.twins(&self.model.simulation);
         let other = match self.why_not_again() {
             _ if twins.is_empty() => None,
-            Some(why) => Some(unrepeated(&twins, &why, self.model.simulation.has_contact())),
+            Some(why) => Some(unrepeated(&twins, &why, twin::hits_again(&self.model.simulation))),
             None => self.repeated(&twins, stop, tell),
         };
         let label = other.unwrap_or(label);
@@ -120,15 +120,15 @@ impl Driver {
 
     /// The label of an accurate scene whose steps, taken again, end elsewhere.
     fn repeated(&mut self, twins: &[Twin], stop: &AtomicBool, tell: &dyn Fn(&str)) -> Option<Label> {
-        tell(&twin::told(twins, self.model.simulation.has_contact()));
+        tell(&twin::told(twins, &self.model.simulation));
         let settle = self.model.loaded.scene.settle.map(crate::build::settle);
         let again = Again::FromStart { start: &self.course.built, settle };
         twin::label_of_twins(&mut self.model.simulation, &again, twins, stop)
     }
 }
 
-/// The label of an accurate scene, with or without contact, whose steps would be taken again, were it not for what `why` says.
-fn unrepeated(twins: &[Twin], why: &str, has_contact: bool) -> Label {
+/// The label of an accurate scene whose steps would be taken again, were it not for what `why` says; errors may have grown where blocks hit again.
+fn unrepeated(twins: &[Twin], why: &str, hits_again: bool) -> Label {
     let (pushed, halved) =
         (twins.iter().any(|&twin| twin != Twin::HalfStep), twins.contains(&Twin::HalfStep));
     let (how, unknown) = match (pushed, halved) {
@@ -137,7 +137,7 @@ fn unrepeated(twins: &[Twin], why: &str, has_contact: bool) -> Label {
             "whether the motion is sensitive, and whether errors of impacts grow, is not known",
         ),
         (true, false) => ("from a slightly different start", "whether the motion is sensitive is not known"),
-        (false, _) if !has_contact => ("with half the step", "whether it is short enough is not known"),
+        (false, _) if !hits_again => ("with half the step", "whether it is short enough is not known"),
         (false, _) => ("with half the step", "whether errors of impacts grow is not known"),
     };
     let cure = match halved {
@@ -145,7 +145,7 @@ fn unrepeated(twins: &[Twin], why: &str, has_contact: bool) -> Label {
         false => "begin with velocities that differ by 1e-4 of the largest, and compare",
     };
     let reason = format!("the run was not repeated {how}, since {why}: {unknown}; {cure}");
-    let word = if halved && has_contact { LabelWord::Inaccurate } else { LabelWord::Accurate };
+    let word = if halved && hits_again { LabelWord::Inaccurate } else { LabelWord::Accurate };
     Label { word, reasons: vec![reason] }
 }
 

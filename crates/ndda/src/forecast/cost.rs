@@ -65,8 +65,10 @@ pub struct Guess {
     pub settles: bool,
     /// Time of the twin that shows whether the motion is sensitive, which a run makes if three or more blocks move; none where fewer can [s].
     pub twin_s: Option<f64>,
-    /// Time of the twin with half the step, which a run makes if a block hits several times; none where blocks cannot touch [s].
+    /// Time of the twin with half the step, which a run makes if a block hits several times, or always; none where nothing can move [s].
     pub half_step_s: Option<f64>,
+    /// Whether it makes that twin always: without contact, and where it takes about a second.
+    pub always_halves: bool,
     /// Most memory of this process, which has done all that a run does [B]; none where the system does not report it.
     pub memory_bytes: Option<u64>,
     /// Files.
@@ -121,6 +123,7 @@ pub fn guess(scene: &Scene, simulation: &mut Simulation) -> Result<Guess, SinkEr
         settles,
         twin_s,
         half_step_s,
+        always_halves: twin::always_halves(simulation, steps),
         memory_bytes: machine::peak_memory_bytes(),
         files,
     })
@@ -216,7 +219,8 @@ impl fmt::Display for Guess {
         if let Some(half_step_s) = self.half_step_s {
             write!(
                 f,
-                "\n  {half_step_s:.1} s more if a block hits several times: a second run with half the step shows whether speeds are right"
+                "\n  {half_step_s:.1} s more{}: a second run with half the step shows whether speeds are right",
+                if self.always_halves { "" } else { " if a block hits several times" }
             )?;
         }
         write!(f, "\nit would write")?;
@@ -256,7 +260,10 @@ mod tests {
         let two = guess_of(2);
         assert_eq!(two.twin_s, None);
         assert!(0.0 < two.half_step_s.unwrap() && two.half_step_s.unwrap() <= 2.0 * two.run_s, "{two:?}");
-        assert!(two.to_string().contains("s more if a block hits several times"), "{two}");
+        assert!(
+            two.always_halves && two.to_string().contains("s more: a second run with half the step"),
+            "{two}"
+        );
         assert!(!two.to_string().contains("if three or more blocks move"), "{two}");
         let three = guess_of(3);
         let twin_s = three.twin_s.unwrap();

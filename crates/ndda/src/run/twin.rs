@@ -29,8 +29,8 @@ use parted::{farthest_m, height_m, parted};
 /// Whether twins of the run are run after it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Sensitivity {
-    /// After an accurate run without contact, or in which three or more blocks have moved, or two that end beside each other, or in which one has hopped several
-    /// times with friction in between, or hit twice or more.
+    /// After an accurate run that is short or has no contact, or in which three or more blocks have moved, or two that end beside each other, or in which one has
+    /// hopped several times with friction in between, or hit twice or more.
     #[default]
     Auto,
     /// After each accurate run.
@@ -76,13 +76,16 @@ const HOPS: f64 = 8.0;
 /// Part of the largest speed that contact adds to the velocity of a block in its second largest impact, from which on half the step is tried.
 const IMPACT: f64 = 0.05;
 
+/// Steps times boundary triangles of a run that is short: it takes about a second.
+const SHORT: u64 = 2_000_000;
+
 /// Whether a run that begins here makes a twin, by default, if its blocks move far enough.
 pub(crate) fn may_want_twin(simulation: &Simulation) -> bool {
     let free = simulation.blocks().ids().filter(|&block| moves(simulation, block));
     simulation.has_contact() && free.take(ENOUGH).count() == ENOUGH
 }
 
-/// Whether a run that begins here makes a twin with half the step, by default: without contact always, else if a block hits several times.
+/// Whether a run that begins here may make a twin with half the step, by default: without contact and if it is short always, else if a block hits several times.
 pub(crate) fn may_want_half_step(simulation: &Simulation) -> bool {
     let may_move = |block| match simulation.has_contact() {
         true => moves(simulation, block),
@@ -113,7 +116,8 @@ impl Sensitivity {
             }
             Self::Auto => {
                 let moved: Vec<BlockId> = moved().take(ENOUGH).collect();
-                (moved.len() == ENOUGH || lie_together(simulation, &moved) || hops, hits_again(simulation))
+                let halves = hits_again(simulation) || always_halves(simulation, simulation.state().step);
+                (moved.len() == ENOUGH || lie_together(simulation, &moved) || hops, halves)
             }
         };
         let mut twins = match (pushes, hops) {
@@ -126,14 +130,14 @@ impl Sensitivity {
     }
 }
 
-/// The line that announces repetitions of a run, with or without contact.
-pub(crate) fn told(twins: &[Twin], has_contact: bool) -> String {
+/// The line that announces repetitions of a run.
+pub(crate) fn told(twins: &[Twin], simulation: &Simulation) -> String {
     let pushed = "velocities changed by 1e-4 of the largest speed";
     let by = match (twins.contains(&PUSHES[0]), twins.contains(&Twin::HalfStep)) {
         (true, true) => format!("{pushed}, then with half the step"),
         (true, false) => pushed.into(),
-        (false, _) if !has_contact => "half the step".into(),
-        (false, _) => "half the step, since blocks have hit several times".into(),
+        (false, _) if hits_again(simulation) => "half the step, since blocks have hit several times".into(),
+        (false, _) => "half the step".into(),
     };
     format!(
         "running the scene again with {by}, to see whether the result changes (`--sensitivity never` skips this)"
@@ -315,8 +319,14 @@ fn lie_together(simulation: &Simulation, moved: &[BlockId]) -> bool {
     bounds(one).touches(&bounds(other))
 }
 
+/// Whether so many steps of a scene are repeated with half the step whatever its blocks do: without contact, and where that does not take long.
+pub(crate) fn always_halves(simulation: &Simulation, steps: u64) -> bool {
+    let is_short = steps.saturating_mul(simulation.blocks().triangles.len() as u64) <= SHORT;
+    (is_short || !simulation.has_contact()) && may_want_half_step(simulation)
+}
+
 /// Whether a block has hit several times.
-fn hits_again(simulation: &Simulation) -> bool {
+pub(crate) fn hits_again(simulation: &Simulation) -> bool {
     simulation.invariants().second_impact.value >= IMPACT
 }
 

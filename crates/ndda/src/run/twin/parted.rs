@@ -7,7 +7,7 @@ use ndda_mesh::geometry::tet_heights;
 use ndda_mesh::{BlockId, TetId, Vec3};
 use ndda_solver::Simulation;
 
-use super::{Twin, hops};
+use super::{Twin, hits_again, hops};
 use crate::numbers::{counted, length};
 use crate::summary::LabelWord;
 
@@ -16,6 +16,8 @@ use crate::summary::LabelWord;
 const OF_PUSH: (f64, f64) = (0.03, 0.01);
 /// The same two limits for a twin with half the step: half of what an accurate label allows, since its errors are at most half of those of the run.
 const OF_STEP: (f64, f64) = (0.05, 0.005);
+/// Three quarters of what that label allows: what a twin with half the step differs by without contact, where errors fall with the square of the step.
+const OF_SECOND_ORDER: (f64, f64) = (0.075, 0.0075);
 /// The most by which the label advises to divide a step.
 const MOST: f64 = 64.0;
 
@@ -35,8 +37,8 @@ pub(crate) struct Parted {
     times: f64,
     /// Whether a block hopped many times with friction in between.
     hops: bool,
-    /// Whether blocks may touch.
-    has_contact: bool,
+    /// Whether a block hit several times.
+    hits_again: bool,
 }
 
 impl Parted {
@@ -61,7 +63,7 @@ impl fmt::Display for Parted {
             return write!(
                 f,
                 "a run with half the step ends {ends}{}: {many}, `{block}` by {by}; divide step_s by {}",
-                if self.has_contact { ", since errors of impacts grow in later ones" } else { "" },
+                if self.hits_again { ", since errors of impacts grow in later ones" } else { "" },
                 self.times.ceil().clamp(2.0, MOST)
             );
         };
@@ -91,6 +93,7 @@ pub(super) fn parted(
     let (state, largest_m_s) = (simulation.state(), simulation.speed_scale_m_s());
     let (away, faster) = match twin {
         Twin::Push(_) => OF_PUSH,
+        Twin::HalfStep if !simulation.has_contact() && simulation.is_of_second_order() => OF_SECOND_ORDER,
         Twin::HalfStep => OF_STEP,
     };
     let differs = |block: BlockId| {
@@ -115,7 +118,7 @@ pub(super) fn parted(
         blocks: all.iter().filter(|one| over(one) > 1.0).count(),
         times: over(worst),
         hops: hops(simulation),
-        has_contact: simulation.has_contact(),
+        hits_again: hits_again(simulation),
     })
 }
 
