@@ -42,7 +42,9 @@ fn convex_width_m(blocks: &BlockSet, block: BlockId) -> Option<f64> {
         let [a, b, c] = blocks.triangle_corners(TriangleId(triangle as u32), &blocks.rest_position);
         let normal = (b - a).cross(&(c - a)).try_normalize(0.0)?;
         let reach_m = reach_below(&normal, &a, nodes);
-        if reach_below(&-normal, &a, nodes) > 1e-9 * reach_m {
+        // Corners that are drawn far from the origin of the scene are off by their last digit.
+        let digits_m = 16.0 * f64::EPSILON * blocks.origin_m.amax();
+        if reach_below(&-normal, &a, nodes) > 1e-9 * reach_m + digits_m {
             return None;
         }
         width_m = width_m.min(reach_m);

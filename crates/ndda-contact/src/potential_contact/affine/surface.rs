@@ -5,6 +5,8 @@ use ndda_mesh::{BlockId, BlockSet, NodeId, Vec3};
 
 /// Triangles whose normals and offsets differ by less than this part are in one plane.
 const SAME_PLANE: f64 = 1e-9;
+/// Corners that are drawn far from the origin of the scene are off by their last digit: so many of these leave triangles in one plane.
+const DIGITS: f64 = 16.0;
 
 /// A plane of the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,16 +52,16 @@ impl BlockFaces {
         let own: Vec<Plane> = triangles.iter().map(all).collect();
         let size = Aabb::around(blocks.rest_position[blocks.nodes_of(block)].iter()).diagonal();
         let neighbours = neighbours(triangles);
+        let off = SAME_PLANE + DIGITS * f64::EPSILON * blocks.origin_m.amax() / size;
         let same = |seed: &Plane, t: usize| {
-            (own[t].normal - seed.normal).norm() <= SAME_PLANE
-                && seed.depth_m(&own[t].point).abs() <= SAME_PLANE * size
+            (own[t].normal - seed.normal).norm() <= off && seed.depth_m(&own[t].point).abs() <= off * size
         };
         let (seeds, of_triangle) = pieces(&neighbours, |seed, t| same(&own[seed], t));
         let planes = seeds.iter().map(|&seed| own[seed]).collect();
         let bends_outward = |(t, around): (usize, &[usize; 3])| {
             around
                 .iter()
-                .all(|&other| triangles[other].iter().all(|n| own[t].depth_m(&rest(n)) >= -SAME_PLANE * size))
+                .all(|&other| triangles[other].iter().all(|n| own[t].depth_m(&rest(n)) >= -off * size))
         };
         let one_piece = pieces(&neighbours, |_, _| true).0.len() == 1;
         Self { planes, of_triangle, convex: one_piece && neighbours.iter().enumerate().all(bends_outward) }
@@ -150,6 +152,18 @@ mod tests {
                     |n: &NodeId| faces.planes[face].depth_m(&blocks.rest_position[n.index()]).abs() < 1e-12;
                 assert!(t.iter().all(on));
             }
+        }
+    }
+
+    #[test]
+    fn a_turned_box_has_six_faces_far_from_the_origin_of_the_scene_too() {
+        for away_m in [0.0, 4.5e6, 1e7] {
+            let mut mesh = test_box([0.0; 3], [1.0, 2.0, 3.0], [2, 1, 2]);
+            let turn = ndda_mesh::Mat3::from(nalgebra::Rotation3::from_euler_angles(0.3, -0.7, 1.1));
+            mesh = mesh.placed(&turn, &(away_m * Vec3::new(1.0, -0.7, 0.3)));
+            let blocks = test_set(vec![mesh]);
+            let faces = BlockFaces::new(&blocks, BlockId(0));
+            assert!(faces.planes.len() == 6 && faces.convex, "{away_m}: {}", faces.planes.len());
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Verdicts on blocks that vibrate on their contacts and supports, or in themselves.
 
-use ndda_solver::{Simulation, Worst};
+use ndda_solver::{BodyKind, Simulation, Worst};
 
 use crate::waves;
 
@@ -120,10 +120,12 @@ pub(super) fn contact_damping(simulation: &Simulation) -> Option<Entry> {
 /// Whether contact damping added energy instead of removing it; shown only beyond the limit.
 pub(super) fn energy_from_damping(simulation: &Simulation) -> Option<Entry> {
     let gain = simulation.invariants().damping_gain;
+    let deforms = simulation.blocks().ids().any(|block| simulation.shape(block).kind == BodyKind::Elastic);
     let reason = format!(
-        "contact damping (`restitution` below 1) added {:.2} % of the largest energy instead of removing energy, limit {:.2} %, which makes blocks vibrate: make blocks Rigid or Affine (body), raise the restitution, or reduce step_s until steps resolve the vibrations of blocks",
+        "contact damping (`restitution` below 1) added {:.2} % of the largest energy instead of removing energy, limit {:.2} %, which makes blocks vibrate: {}raise the restitution, or reduce step_s until steps resolve the vibrations of blocks",
         100.0 * gain,
-        100.0 * MOST_GIVEN
+        100.0 * MOST_GIVEN,
+        if deforms { "make blocks Rigid or Affine (body), " } else { "" }
     );
     (gain > MOST_GIVEN).then(|| warned("energy added by contact damping", gain, MOST_GIVEN, reason))
 }

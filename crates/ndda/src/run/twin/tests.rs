@@ -106,9 +106,9 @@ fn blocks_that_rounding_alone_moves_are_not_sensitive() {
 }
 
 #[test]
-fn two_blocks_have_no_twin_unless_one_is_asked_for() {
+fn a_short_run_of_one_block_is_repeated_unless_that_is_switched_off() {
     let sliding = ["at_m: (0, 0, 0)"];
-    for (sensitivity, has_twin) in [(Sensitivity::Auto, false), (Sensitivity::Always, true)] {
+    for (sensitivity, has_twin) in [(Sensitivity::Auto, true), (Sensitivity::Never, false)] {
         let summary = label("(5.5, 0, -8.1)", (2e9, 2e-4), &sliding, sensitivity);
         assert_eq!(summary.stages_s.0.iter().any(|(stage, _)| stage == "sensitivity"), has_twin);
     }
@@ -139,4 +139,25 @@ fn blocks_that_a_stage_lets_fall_are_sensitive_as_those_of_a_scene_without_stage
     assert_eq!(without.label.word, LabelWord::Accurate, "{:?}", without.label.reasons);
     assert_eq!(with.label.word, LabelWord::Sensitive, "{:?}", with.label.reasons);
     assert_eq!((with.state_crc32, with.verdicts), (without.state_crc32, without.verdicts));
+}
+
+#[test]
+fn a_raft_that_its_steps_do_not_resolve_is_inaccurate_although_nothing_touches_it() {
+    let raft = |step_s: f64| {
+        let text = format!(
+            "(title: \"raft\", time: (step_s: {step_s:e}, end_s: 30), gravity_m_s2: (0, 0, -9.81),
+            materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: 900)],
+            blocks: [(name: \"raft\", material: \"rock\", body: Rigid, shape: Box(size_m: (2, 2, 1), cells: (1, 1, 1)), at_m: (0, 0, -0.85))],
+            water: [(on: Part(block: \"raft\", region: All), pressure: Level(at_m: (0, 0, 0)))])"
+        );
+        let outcome = Run::new(Model::from_text(&text).unwrap()).finish(&mut []).unwrap();
+        // u = −5 cm (1 − cos ω t), ω² = ρ_w g/(ρ h).
+        let rate = (9810.0f64 / 900.0).sqrt();
+        let exact_m_s = -0.05 * rate * (30.0 * rate).sin();
+        let error = (outcome.simulation.state().velocity[0].z - exact_m_s).abs() / (0.05 * rate);
+        (outcome.summary.label.word, error)
+    };
+    let ((long, off), (short, little)) = (raft(0.2), raft(0.01));
+    assert!(long == LabelWord::Inaccurate && off > 1.0, "{long:?} {off}");
+    assert!(short == LabelWord::Accurate && little < 0.01, "{short:?} {little}");
 }
