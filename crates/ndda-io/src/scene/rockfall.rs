@@ -52,7 +52,7 @@ pub struct Rockfall {
 #[serde(deny_unknown_fields)]
 pub enum Ground {
     /// Heights in a file: an ESRI ASCII grid (`.asc`), points of a regular grid (`.xyz`, `.txt`, `.csv`), a GeoTIFF (`.tif`, `.tiff`), or a surface of triangles
-    /// (`.stl`).
+    /// (`.stl`). A first line of names (x, east; y, north; z, height, …) says which columns of points are which; without one they are x, y, z.
     File {
         /// Path, relative to the scene file.
         file: String,
