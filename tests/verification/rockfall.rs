@@ -171,6 +171,23 @@ fn what_was_not_seen_to_its_end_makes_probabilities_lower_bounds_and_is_said() {
 }
 
 #[test]
+fn a_boulder_that_is_slow_in_the_air_does_not_rest_there() {
+    let mut model = scene(
+        (&[0.0, 0.0, 0.0], 100.0),
+        100.0,
+        "ground: (restitution: Always(0.1), friction_deg: Always(45)),
+         boulders: (material: \"rock\", size: Diameter(diameter_m: Always(1)), shapes: [Cuboid()]),
+         releases: [(name: \"drop\", place: Points([(100, 50)]), height_m: Always(2))], count: 1",
+    );
+    model.loaded.scene.gravity_m_s2[2] = -0.01;
+    let fall = &falls(&model)[0];
+    let last = fall.path.last().expect("a path");
+    // It needs √(2 h/g) = 20 s for 2 m, and is never faster than 0.2 m/s.
+    assert_eq!(fall.end, End::Rest);
+    assert!(last.time_s > 20.0 && last.height_m < 1.0, "{last:?}");
+}
+
+#[test]
 fn a_boulder_that_leaves_the_terrain_is_said() {
     let model = scene(
         (&[60.0, 30.0, 0.0], 30.0),

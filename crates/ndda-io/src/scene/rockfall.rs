@@ -291,7 +291,7 @@ pub struct CountingLine {
     pub points_m: Vec<[f64; 2]>,
 }
 
-/// When a boulder has come to rest.
+/// When a boulder that touches the ground has come to rest.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]

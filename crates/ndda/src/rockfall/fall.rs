@@ -266,8 +266,7 @@ impl Watch<'_> {
                 Err(error) => break Some(End::Stopped(error.to_string())),
             };
             self.fall.steps += 1;
-            let time_s = since_s + simulation.time_s();
-            let end = self.see(simulation, time_s);
+            let end = self.see(simulation, since_s + simulation.time_s(), touches);
             if end.is_some() {
                 break end;
             }
@@ -289,7 +288,7 @@ impl Watch<'_> {
     }
 
     /// Takes note of a step; the end of the fall, if it is one.
-    fn see(&mut self, simulation: &Simulation, time_s: f64) -> Option<End> {
+    fn see(&mut self, simulation: &Simulation, time_s: f64, touches: bool) -> Option<End> {
         let now = self.moment(simulation, time_s);
         let before = std::mem::replace(&mut self.last, now);
         self.fall.largest.see(&now);
@@ -308,14 +307,14 @@ impl Watch<'_> {
             let reason = "the boulder went through the ground: raise rockfall.detail.impact_m_s".to_string();
             return Some(End::Stopped(reason));
         }
-        if self.rests(simulation, time_s) {
+        if self.rests(simulation, time_s, touches) {
             return Some(End::Rest);
         }
         (time_s >= self.case.scene.time.end_s).then_some(End::StillMoving)
     }
 
-    /// Whether no point has been fast for long enough.
-    fn rests(&mut self, simulation: &Simulation, time_s: f64) -> bool {
+    /// Whether no point has been fast for long enough, from one step in which the boulder touched the ground to another: in the air it may be slow for a while.
+    fn rests(&mut self, simulation: &Simulation, time_s: f64, touches: bool) -> bool {
         let rest = &self.case.rockfall.rest;
         let nodes = simulation.blocks().nodes_of(BOULDER);
         let velocity = &simulation.state().velocity[nodes];
@@ -323,7 +322,7 @@ impl Watch<'_> {
             self.slow_since_s = None;
             return false;
         }
-        time_s - *self.slow_since_s.get_or_insert(time_s) >= rest.over_s
+        touches && time_s - *self.slow_since_s.get_or_insert(time_s) >= rest.over_s
     }
 
     /// Keeps this moment in the path; where there are too many, every second of them is dropped, from then on.
