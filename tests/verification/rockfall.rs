@@ -188,6 +188,21 @@ fn a_boulder_that_is_slow_in_the_air_does_not_rest_there() {
 }
 
 #[test]
+fn falls_that_were_not_computed_to_their_end_are_not_accurate() {
+    let model = slope("", 3);
+    let mut falls = falls(&model);
+    falls[1].end = End::Stopped("contact is too stiff".into());
+    let outcome = Outcome::new(&model, "slope", &falls, 0.0);
+    assert_eq!(outcome.accuracy.inaccurate, 1);
+    let said = outcome.to_string();
+    assert!(
+        said.contains("note: 1 of 3 falls is inaccurate:\n  1 fall was not computed to the end"),
+        "{said}"
+    );
+    assert!(!said.contains("accurately computed"), "{said}");
+}
+
+#[test]
 fn a_boulder_that_leaves_the_terrain_is_said() {
     let model = scene(
         (&[60.0, 30.0, 0.0], 30.0),

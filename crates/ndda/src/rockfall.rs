@@ -21,6 +21,7 @@ mod release;
 mod report;
 pub mod result;
 pub mod spread;
+mod stopped;
 mod terrain;
 #[cfg(test)]
 mod tests;

@@ -12,9 +12,9 @@ use super::boulder::Boulder;
 use super::contact::BOULDER;
 use super::draw::{Draw, FRICTIONS_DEG, Of, RESTITUTIONS};
 use super::passage::{Moment, crossing};
-use super::release;
 use super::terrain::Terrain;
 use super::window::{self, Cells, Laws, Motion};
+use super::{release, stopped};
 
 /// Longest step where the scene does not say [s].
 const STEP_S: f64 = 2e-3;
@@ -263,7 +263,7 @@ impl Watch<'_> {
         let end = loop {
             touches = match simulation.step() {
                 Ok(report) => report.contact.contact_pairs > 0,
-                Err(error) => break Some(End::Stopped(error.to_string())),
+                Err(error) => break Some(End::Stopped(stopped::with_a_cure(&error.to_string()))),
             };
             self.fall.steps += 1;
             let end = self.see(simulation, since_s + simulation.time_s(), touches);

@@ -88,7 +88,7 @@ pub struct LineResult {
     pub first: Option<AtLine>,
 }
 
-/// Falls that are not accurate.
+/// Falls that are not accurate, or were not computed to their end.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Inaccurate {
     /// How many.
@@ -124,8 +124,8 @@ impl Outcome {
             part_m: part_m.max(length_m(&profile_m) / profile::MOST_STATIONS),
             profile_m,
             accuracy: Inaccurate {
-                inaccurate: falls.iter().filter(|fall| !fall.accuracy.is_accurate()).count(),
-                reasons: worst.reasons(model.step_s(), model.rockfall.detail.impact_m_s),
+                inaccurate: falls.iter().filter(|fall| !is_accurate(fall)).count(),
+                reasons: reasons(model, falls, &worst),
                 worst,
             },
             warnings: warnings(model, falls),
@@ -133,6 +133,20 @@ impl Outcome {
             wall_s,
         }
     }
+}
+
+/// Whether a fall was computed to its end, with errors within their limits.
+fn is_accurate(fall: &Fall) -> bool {
+    !matches!(fall.end, End::Stopped(_)) && fall.accuracy.is_accurate()
+}
+
+/// What makes falls inaccurate, and what to change.
+fn reasons(model: &Model, falls: &[Fall], worst: &Accuracy) -> Vec<String> {
+    let stopped = ends(falls).stopped;
+    let count = counted(stopped, "fall was", "falls were");
+    let unfinished = (stopped > 0).then(|| format!("{count} not computed to the end, as the warning says"));
+    let beyond = worst.reasons(model.step_s(), model.rockfall.detail.impact_m_s);
+    unfinished.into_iter().chain(beyond).collect()
 }
 
 fn ends(falls: &[Fall]) -> Ends {
