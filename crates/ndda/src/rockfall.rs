@@ -190,8 +190,7 @@ impl Model {
             return Err(RockfallError::Scene(model.loaded.errors(vec![found])));
         }
         let refused = (0..model.rockfall.count).into_par_iter().find_map_first(|k| model.case().refusal(k));
-        if let Some((release, reason)) = refused {
-            let path = format!("rockfall.releases[{release}].place");
+        if let Some((path, reason)) = refused {
             let found = model.loaded.diagnose_as(Code::CannotBuild, &path, reason);
             return Err(RockfallError::Scene(model.loaded.errors(vec![found])));
         }

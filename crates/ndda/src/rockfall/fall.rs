@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use ndda_io::scene::{Material, Rockfall, Scene};
+use ndda_io::scene::{CountingLine, Material, Rockfall, Scene};
 use ndda_mesh::Vec3;
 use ndda_solver::Simulation;
 use serde::{Deserialize, Serialize};
@@ -11,7 +11,7 @@ use super::accuracy::Accuracy;
 use super::boulder::Boulder;
 use super::contact::BOULDER;
 use super::draw::{Draw, FRICTIONS_DEG, Of, RESTITUTIONS};
-use super::passage::{Moment, crossing};
+use super::passage::{Moment, crossing, distance_m};
 use super::terrain::Terrain;
 use super::window::{self, Cells, Laws, Motion};
 use super::{release, stopped};
@@ -143,10 +143,21 @@ impl Case<'_> {
         (boulder, index, start, draw)
     }
 
-    /// Why the boulder with a number cannot be released, by the number of its release.
-    pub(super) fn refusal(&self, number: u32) -> Option<(usize, String)> {
+    /// Why the boulder with a number cannot be released, and the place in the scene that says it.
+    pub(super) fn refusal(&self, number: u32) -> Option<(String, String)> {
         let (_, release, start, _) = self.released(number);
-        start.err().map(|reason| (release, reason))
+        let [x, y] = match start {
+            Ok(motion) => [motion.center.x, motion.center.y],
+            Err(reason) => return Some((format!("rockfall.releases[{release}].place"), reason)),
+        };
+        let is_through =
+            |line: &CountingLine| distance_m(&line.points_m, [x, y]) <= self.terrain.rounding_m();
+        let k = self.rockfall.lines.iter().position(is_through)?;
+        let reason = format!(
+            "line `{}` passes through ({x:.3}, {y:.3}), where boulder {number} starts, so that rounding would decide whether it crosses the line: move one of them",
+            self.rockfall.lines[k].name
+        );
+        Some((format!("rockfall.lines[{k}].points_m"), reason))
     }
 
     /// The fall of the boulder with a number.

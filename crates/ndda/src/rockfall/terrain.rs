@@ -14,6 +14,8 @@ const LEAST_STEP_M: f64 = 1e-3;
 const MOST_M: f64 = 1e9;
 /// Steepest ground: heights of neighbours that differ by more times their distance stand for something else.
 const STEEPEST: f64 = 500.0;
+/// Part of the size of the terrain, and of its coordinates, that rounding stays below.
+const ROUNDING: f64 = 1e-9;
 /// No height of ground is as large [m].
 const MOST_HEIGHT_M: f64 = 1e5;
 
@@ -162,6 +164,13 @@ impl Terrain {
     /// Least and largest place on the map [m].
     pub fn bounds_m(&self) -> [[f64; 2]; 2] {
         [self.origin_m, self.map_m(self.cells().map(|n| n as f64))]
+    }
+
+    /// Distance on the map below which places are the same but for rounding [m].
+    pub(super) fn rounding_m(&self) -> f64 {
+        let [least, most] = self.bounds_m();
+        let largest = |axis: usize| (most[axis] - least[axis]) + least[axis].abs().max(most[axis].abs());
+        ROUNDING * largest(0).max(largest(1))
     }
 
     /// Least and largest height [m].
