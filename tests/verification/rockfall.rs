@@ -230,6 +230,21 @@ fn lines_through_a_release_or_without_a_length_are_refused() {
 }
 
 #[test]
+fn heights_of_releases_that_are_cut_off_are_said() {
+    let model = scene(
+        (&[60.0, 30.0, 0.0], 30.0),
+        0.01,
+        "ground: (restitution: Always(0.5), friction_deg: Always(20)),
+         boulders: (material: \"rock\", size: Diameter(diameter_m: Always(1))),
+         releases: [(name: \"top\", place: Points([(10, 50)]), height_m: Normal(0, 1), speed_m_s: Normal(9, 1))], count: 1",
+    );
+    let outcome = Outcome::new(&model, "steep", &falls(&model), 0.0);
+    let cut_off: Vec<_> = outcome.warnings.iter().filter(|said| said.contains("cut off")).collect();
+    assert_eq!(cut_off.len(), 1, "{cut_off:?}");
+    assert!(cut_off[0].starts_with("height_m of release `top`: 50.0 % of its distribution lies below 0"));
+}
+
+#[test]
 fn a_boulder_that_leaves_the_terrain_is_said() {
     let model = scene(
         (&[60.0, 30.0, 0.0], 30.0),

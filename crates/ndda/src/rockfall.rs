@@ -154,6 +154,8 @@ pub struct Model {
     pub terrain: Terrain,
     /// Classes of ground that no zone names, and how many cells have them.
     pub unnamed: Vec<(u32, usize)>,
+    /// The part of the terrain that has neither a class nor a zone, in words.
+    pub bare: Option<String>,
 }
 
 impl Model {
@@ -177,8 +179,9 @@ impl Model {
         let classes = Classes::of(&rockfall, folder).map_err(|(path, message)| refuse(&path, message))?;
         let terrain = Terrain::new(&rockfall.terrain, folder, (&rockfall.zones, classes.as_ref()))
             .map_err(|message| refuse("rockfall.terrain", message))?;
-        let unnamed = classes.map_or_else(Vec::new, |classes| classes.without_zone(&rockfall));
-        let model = Self { rockfall, terrain, unnamed, loaded };
+        let unnamed = classes.as_ref().map_or_else(Vec::new, |classes| classes.without_zone(&rockfall));
+        let bare = classes.and_then(|classes| classes.leave_bare(&terrain));
+        let model = Self { rockfall, terrain, unnamed, bare, loaded };
         model.meets_the_terrain()?;
         let cells = model.reach_cells().map(|n| n as f64);
         if cells[0] * cells[1] > MOST_CELLS {

@@ -1,10 +1,10 @@
 //! What all boulders together come to.
 
-use ndda_io::scene::{CountingLine, Rockfall};
+use ndda_io::scene::{CountingLine, Release, Rockfall, Scatter};
 use serde::{Deserialize, Serialize};
 
 use super::accuracy::Accuracy;
-use super::draw::{self, FRICTIONS_DEG, LITTLE, RESTITUTIONS};
+use super::draw::{self, DIPS_DEG, FRICTIONS_DEG, FROM_ZERO, LITTLE, RESTITUTIONS};
 use super::fall::{End, Fall};
 use super::passage::{Moment, length_m};
 use super::profile;
@@ -199,7 +199,9 @@ fn warnings(model: &Model, falls: &[Fall]) -> Vec<String> {
             ends.stopped
         ));
     }
+    warnings.extend(model.bare.clone());
     warnings.extend(laws_cut_off(model));
+    warnings.extend(releases_cut_off(model));
     warnings
 }
 
@@ -214,16 +216,40 @@ fn laws_cut_off(model: &Model) -> Vec<String> {
         for (what, scatter, limits) in
             [("restitution", restitution, RESTITUTIONS), ("friction_deg", friction_deg, FRICTIONS_DEG)]
         {
-            let part = draw::cut_off(scatter, limits);
-            if part > LITTLE {
-                found.push(format!(
-                    "{what} of {name}: {:.1} % of its distribution lies beyond {} to {} and is cut off; give it a smaller spread, or a `Triangular` one",
-                    100.0 * part, limits.0, limits.1
-                ));
-            }
+            found.extend(cut_off(what, &name, scatter, limits));
         }
     }
     found
+}
+
+/// Heights, speeds and dips of releases of which a part of the distribution is cut off.
+fn releases_cut_off(model: &Model) -> Vec<String> {
+    let of_release = |release: &Release| {
+        let Release { name, height_m, speed_m_s, dip_deg, .. } = release;
+        let name = format!("release `{name}`");
+        let all = [
+            ("height_m", height_m, FROM_ZERO),
+            ("speed_m_s", speed_m_s, FROM_ZERO),
+            ("dip_deg", dip_deg, DIPS_DEG),
+        ];
+        all.map(|(what, scatter, limits)| cut_off(what, &name, scatter.as_ref()?, limits))
+    };
+    model.rockfall.releases.iter().flat_map(of_release).flatten().collect()
+}
+
+/// That a part of a distribution is cut off, where it is not little.
+fn cut_off(what: &str, of: &str, scatter: &Scatter, limits: (f64, f64)) -> Option<String> {
+    let part = draw::cut_off(scatter, limits);
+    let beyond = match limits {
+        FROM_ZERO => "below 0".to_string(),
+        (least, most) => format!("beyond {least} to {most}"),
+    };
+    (part > LITTLE).then(|| {
+        format!(
+            "{what} of {of}: {:.1} % of its distribution lies {beyond} and is cut off; give it a smaller spread, or a `Triangular` one",
+            100.0 * part
+        )
+    })
 }
 
 /// A boulder when it first reaches the line with a number; none if it does not.

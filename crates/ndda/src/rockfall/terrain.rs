@@ -120,6 +120,12 @@ impl Terrain {
         self.zones[j * self.cells()[0] + i]
     }
 
+    /// Middles on the map of both triangles of a cell, in the same order [m].
+    pub(super) fn middles_m(&self, i: usize, j: usize) -> [[f64; 2]; 2] {
+        let (i, j) = (i as f64, j as f64);
+        [[2.0 / 3.0, 1.0 / 3.0], [1.0 / 3.0, 2.0 / 3.0]].map(|[u, v]| self.map_m([i + u, j + v]))
+    }
+
     /// Place on the map [m] of a place in steps of the grid.
     pub fn map_m(&self, [u, v]: [f64; 2]) -> [f64; 2] {
         [self.origin_m[0] + u * self.step_m[0], self.origin_m[1] + v * self.step_m[1]]
@@ -187,9 +193,7 @@ impl Terrain {
             return (found, held);
         }
         for (k, zones_of_cell) in found.iter_mut().enumerate() {
-            let (i, j) = ((k % nx) as f64, (k / nx) as f64);
-            for (half, [u, v]) in [[2.0 / 3.0, 1.0 / 3.0], [1.0 / 3.0, 2.0 / 3.0]].into_iter().enumerate() {
-                let middle = self.map_m([i + u, j + v]);
+            for (half, middle) in self.middles_m(k % nx, k / nx).into_iter().enumerate() {
                 let class = classes.and_then(|classes| classes.at(middle));
                 let holds = |zone: &Zone| match class {
                     _ if !zone.outline_m.is_empty() => is_inside(&zone.outline_m, middle),
@@ -333,6 +337,9 @@ mod tests {
         let terrain = Terrain::new(&ground, Path::new("."), (&zones, Some(&classes))).unwrap();
         // Middles at 10 + 4/3 and 10 + 2/3, and at 12 + 4/3 and 12 + 2/3.
         assert_eq!((terrain.zones_at(0, 0), terrain.zones_at(1, 0)), ([1, 2], [0, 0]));
+        // One of four triangles is beyond the grid of classes; the other without a zone has a class that none names.
+        let bare = classes.leave_bare(&terrain).unwrap_or_default();
+        assert!(bare.contains("25.00 % of the terrain, 1 triangles between (13.3, 21.3) and"), "{bare}");
     }
 
     #[test]
