@@ -40,11 +40,11 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
+use ndda_io::WriteError;
 use ndda_io::code::Code;
 use ndda_io::diagnostic::SceneErrors;
 use ndda_io::read::LoadedScene;
 use ndda_io::scene::Rockfall;
-use ndda_io::{OutputFolder, WriteError};
 use rayon::prelude::*;
 
 use crate::places;
@@ -127,12 +127,7 @@ pub fn make(
     pool.install(|| {
         let model = Model::new(loaded, folder, (request.count, request.seed))?;
         let out = &request.out;
-        OutputFolder::refuse_run(out)?;
-        if !request.force && files::outcome(out).exists() {
-            return Err(RockfallError::Earlier(out.clone()));
-        }
-        std::fs::create_dir_all(out)
-            .map_err(|source| RockfallError::Folder { folder: out.clone(), source })?;
+        let _held = files::make_folder(out, request.force)?;
         let started = Instant::now();
         let falls = model.falls(stop, tell)?;
         let wall_s = started.elapsed().as_secs_f64();
