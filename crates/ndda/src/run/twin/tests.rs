@@ -152,3 +152,22 @@ fn blocks_that_a_stage_lets_fall_are_sensitive_as_those_of_a_scene_without_stage
     assert_eq!(with.label.word, LabelWord::Sensitive, "{:?}", with.label.reasons);
     assert_eq!((with.state_crc32, with.verdicts), (without.state_crc32, without.verdicts));
 }
+
+#[test]
+fn a_run_that_goes_on_is_repeated_as_it_began() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("cube.ron");
+    let text = "(title: \"cube\", time: (step_s: 1e-3, end_s: 1), gravity_m_s2: (0, 0, -9.81),
+        materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.2, density_kg_m3: 2600)],
+        blocks: [(name: \"cube\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)))])";
+    std::fs::write(&file, text).unwrap();
+    for asked in [Sensitivity::Always, Sensitivity::Never] {
+        let out = folder.path().join(format!("{asked:?}"));
+        let stop = Arc::new(AtomicBool::new(true));
+        let run = Run::new(Model::open(&file, &[]).unwrap());
+        let run = run.record(ndda_io::OutputFolder::create(&out, false).unwrap(), file.clone()).unwrap();
+        run.sensitivity(asked).stop_when(stop).finish(&mut []).unwrap();
+        let resumed = Run::resume(&out).unwrap().run;
+        assert_eq!(resumed.sensitivity, asked);
+    }
+}
