@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use ndda::rockfall::result::wilson;
-use ndda::rockfall::{End, Fall, Model, Outcome};
+use ndda::rockfall::{End, Fall, Model, Outcome, RockfallError};
 use ndda_io::read;
 
 use crate::evidence::Answer::{AtMost, Near, Within};
@@ -13,15 +13,19 @@ const CASE: &str = "rockfall";
 const G: f64 = 9.81;
 
 /// A scene on ground with heights along x, the same for all y from 0 to 100 m, in which boulders fall for a time.
-fn scene((heights, step_x_m): (&[f64], f64), end_s: f64, more: &str) -> Model {
+fn scene(heights: (&[f64], f64), end_s: f64, more: &str) -> Model {
+    checked(heights, end_s, more).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// The same, or why it cannot be run.
+fn checked((heights, step_x_m): (&[f64], f64), end_s: f64, more: &str) -> Result<Model, RockfallError> {
     let row = heights.iter().map(f64::to_string).collect::<Vec<_>>().join(", ");
     let text = format!(
         "(title: \"rockfall\", gravity_m_s2: (0, 0, -{G}), time: (end_s: {end_s}),
           materials: [(name: \"rock\", density_kg_m3: 2700, young_pa: 50e9, poisson: 0.25)],
           rockfall: (terrain: Heights(origin_m: (0, 0), step_m: ({step_x_m}, 50), heights_m: [[{row}], [{row}], [{row}]]), {more}))"
     );
-    let loaded = read::load_text("rockfall.ron", &text, &[], None).unwrap_or_else(|e| panic!("{e}"));
-    Model::new(loaded, Path::new("."), (None, None)).unwrap_or_else(|e| panic!("{e}"))
+    Model::new(read::load_text("rockfall.ron", &text, &[], None)?, Path::new("."), (None, None))
 }
 
 fn falls(model: &Model) -> Vec<Fall> {
@@ -168,6 +172,76 @@ fn what_was_not_seen_to_its_end_makes_probabilities_lower_bounds_and_is_said() {
         part.to_string().contains("warning: interrupted: results are those of the 3 boulders of 8"),
         "{part}"
     );
+}
+
+#[test]
+fn a_boulder_that_is_slow_in_the_air_does_not_rest_there() {
+    let mut model = scene(
+        (&[0.0, 0.0, 0.0], 100.0),
+        100.0,
+        "ground: (restitution: Always(0.1), friction_deg: Always(45)),
+         boulders: (material: \"rock\", size: Diameter(diameter_m: Always(1)), shapes: [Cuboid()]),
+         releases: [(name: \"drop\", place: Points([(100, 50)]), height_m: Always(2))], count: 1",
+    );
+    model.loaded.scene.gravity_m_s2[2] = -0.01;
+    let fall = &falls(&model)[0];
+    let last = fall.path.last().expect("a path");
+    // It needs √(2 h/g) = 20 s for 2 m, and is never faster than 0.2 m/s.
+    assert_eq!(fall.end, End::Rest);
+    assert!(last.time_s > 20.0 && last.height_m < 1.0, "{last:?}");
+}
+
+#[test]
+fn falls_that_were_not_computed_to_their_end_are_not_accurate() {
+    let model = slope("", 3);
+    let mut falls = falls(&model);
+    falls[1].end = End::Stopped("contact is too stiff".into());
+    let outcome = Outcome::new(&model, "slope", &falls, 0.0);
+    assert_eq!(outcome.accuracy.inaccurate, 1);
+    let said = outcome.to_string();
+    assert!(
+        said.contains("note: 1 of 3 falls is inaccurate:\n  1 fall was not computed to the end"),
+        "{said}"
+    );
+    assert!(!said.contains("accurately computed"), "{said}");
+}
+
+#[test]
+fn lines_through_a_release_or_without_a_length_are_refused() {
+    let refused = |line: &str, place: &str| {
+        let more = format!(
+            "ground: (restitution: Always(0.5), friction_deg: Always(20)),
+             boulders: (material: \"rock\", size: Diameter(diameter_m: Always(1))),
+             releases: [(name: \"top\", place: {place})], lines: [(name: \"road\", points_m: {line})], count: 9"
+        );
+        checked((&[60.0, 30.0, 0.0], 30.0), 1.0, &more).err().map_or_else(String::new, |e| e.to_string())
+    };
+    let through = refused("[(10, 0), (10, 100)]", "Points([(20, 50), (10, 60)])");
+    assert!(through.contains("rockfall.lines[0].points_m"), "{through}");
+    assert!(
+        through.contains("line `road` passes through (10.000, 60.000), where boulder 1 starts"),
+        "{through}"
+    );
+    // Places along a line are on it but for rounding.
+    assert!(refused("[(10, 0), (13, 90)]", "Line([(11, 30), (12, 60)])").contains("move one of them"));
+    assert_eq!(refused("[(10.001, 0), (10.001, 100)]", "Points([(10, 60)])"), "");
+    let point = refused("[(10, 50), (10, 50)]", "Points([(20, 50)])");
+    assert!(point.contains("has no length"), "{point}");
+}
+
+#[test]
+fn heights_of_releases_that_are_cut_off_are_said() {
+    let model = scene(
+        (&[60.0, 30.0, 0.0], 30.0),
+        0.01,
+        "ground: (restitution: Always(0.5), friction_deg: Always(20)),
+         boulders: (material: \"rock\", size: Diameter(diameter_m: Always(1))),
+         releases: [(name: \"top\", place: Points([(10, 50)]), height_m: Normal(0, 1), speed_m_s: Normal(9, 1))], count: 1",
+    );
+    let outcome = Outcome::new(&model, "steep", &falls(&model), 0.0);
+    let cut_off: Vec<_> = outcome.warnings.iter().filter(|said| said.contains("cut off")).collect();
+    assert_eq!(cut_off.len(), 1, "{cut_off:?}");
+    assert!(cut_off[0].starts_with("height_m of release `top`: 50.0 % of its distribution lies below 0"));
 }
 
 #[test]

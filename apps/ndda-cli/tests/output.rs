@@ -154,3 +154,31 @@ fn the_log_says_what_ran_on_what() {
         assert!(log.contains(part), "{part} is missing in\n{log}");
     }
 }
+
+#[test]
+fn files_of_somebody_else_are_not_replaced_by_results_of_the_same_name() {
+    let place = tempfile::tempdir().unwrap();
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
+    let scene = |name: &str| scenes.join(name).display().to_string();
+    let (slope, rockfall) = (scene("safety/plane_dry.ron"), scene("works/rockfall.ron"));
+    let sliding = scene("sliding_45.ron");
+    for (file, words) in [
+        ("boulders.csv", vec!["rockfall", &rockfall, "--count", "1"]),
+        ("rockfall.json", vec!["rockfall", &rockfall, "--count", "1", "--force"]),
+        ("safety.json", vec!["safety", &slope]),
+        ("safety.json", vec!["safety", &slope, "--force"]),
+        ("certificate.json", vec!["certify", &sliding]),
+        ("tune.json", vec!["tune", &sliding]),
+        ("sweep.csv", vec!["study", &sliding, "--vary", "time.end_s=0.01,0.02", "--of", "label"]),
+    ] {
+        let out = place.path().join(file.replace('.', "_"));
+        fs::create_dir_all(&out).unwrap();
+        fs::write(out.join(file), "{\"mine\": 1}").unwrap();
+        let ended = ndda().args(&words).arg("--out").arg(&out).output().unwrap();
+        let said = String::from_utf8_lossy(&ended.stderr).into_owned();
+        assert_eq!(ended.status.code(), Some(5), "{words:?}: {said}");
+        assert!(said.contains(&format!("something that ndda did not write ({file})")), "{words:?}: {said}");
+        assert_eq!(fs::read_to_string(out.join(file)).unwrap(), "{\"mine\": 1}");
+        assert_eq!(files(&out), set(&[file]), "{words:?}");
+    }
+}

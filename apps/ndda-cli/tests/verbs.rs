@@ -352,6 +352,10 @@ fn a_rockfall_that_is_interrupted_keeps_the_falls_that_have_ended() {
         line.clear();
         assert!(std::io::BufRead::read_line(&mut told, &mut line).unwrap() > 0, "it ended too early");
     }
+    // Nobody else writes there meanwhile.
+    let again = ["rockfall", scene.to_str().unwrap(), "--count", "1", "--force", "--out", "a"];
+    let (code, refusal) = refused(folder.path(), &again);
+    assert!(code == 5 && refusal.contains("another run is writing to a"), "{code} {refusal}");
     let id = running.id().to_string();
     assert!(Command::new("kill").args(["-INT", &id]).status().unwrap().success());
     let ended = running.wait_with_output().unwrap();

@@ -65,9 +65,9 @@ pub struct HowArgs {
     /// A limit that is passed makes the run fail.
     #[arg(long)]
     pub strict: bool,
-    /// Whether a second run shows that the motion is sensitive: auto, always or never.
-    #[arg(long, default_value = "auto")]
-    pub sensitivity: Sensitivity,
+    /// Whether a second run shows that the motion is sensitive: auto, always or never [default: auto; of a run that goes on, what it began with].
+    #[arg(long)]
+    pub sensitivity: Option<Sensitivity>,
     /// Prints errors only.
     #[arg(long)]
     pub quiet: bool,

@@ -134,7 +134,8 @@ fn finish(run: Run, folder: &Path, how: &HowArgs, ranks: &Arc<dyn Communicator>)
     let (step, steps) = (run.model().simulation.state().step, run.model().steps());
     let threads = rayon::current_num_threads();
     say(ranks, how, &format!("{} on {} ranks with {threads} threads each", run.name(), ranks.size()));
-    let run = run.strict(how.strict).sensitivity(how.sensitivity).stop_when(asked_to_end()).tell(tell);
+    let run = how.sensitivity.into_iter().fold(run, Run::sensitivity);
+    let run = run.strict(how.strict).stop_when(asked_to_end()).tell(tell);
     let mut progress = Progress { first: step, steps, started: Instant::now(), said: Instant::now(), speaks };
     let outcome = run.finish_watched(&mut [&mut progress], &mut |resting| tell(&resting.to_string()));
     match outcome {

@@ -9,6 +9,8 @@ use crate::write_error::WriteError;
 
 /// Ending of the temporary file beside the one that is being written.
 pub(crate) const TEMPORARY_ENDING: &str = ".tmp";
+/// Links that are followed, one after the other.
+const MOST_LINKS: usize = 40;
 /// Files that are synced at a time.
 const AT_A_TIME: usize = 8;
 
@@ -19,6 +21,37 @@ const AT_A_TIME: usize = 8;
 /// is as it was.
 pub fn write(path: &Path, content: &[u8]) -> Result<(), WriteError> {
     write_by(path, |file| file.write_all(content))
+}
+
+/// Writes a file that somebody named. A link stays, and the file that it leads to is replaced as by [`write()`]; what is no regular file, as a pipe, stays what it
+/// is, and takes the content.
+///
+/// # Errors
+/// As [`write()`].
+pub fn write_named(path: &Path, content: &[u8]) -> Result<(), WriteError> {
+    // Of what a link leads to.
+    match fs::metadata(path).map(|found| found.file_type()) {
+        Ok(kind) if kind.is_file() && path.is_symlink() => {
+            let file = fs::canonicalize(path).map_err(WriteError::io("look at", path))?;
+            write(&file, content)
+        }
+        Ok(kind) if kind.is_file() => write(path, content),
+        Ok(kind) if !kind.is_dir() => {
+            let mut file = File::options().write(true).open(path).map_err(WriteError::io("open", path))?;
+            file.write_all(content).map_err(WriteError::io("write", path))
+        }
+        _ => write(&end_of_links(path), content),
+    }
+}
+
+/// Where a link leads to that leads to nothing yet.
+fn end_of_links(path: &Path) -> PathBuf {
+    let mut end = path.to_path_buf();
+    for _ in 0..MOST_LINKS {
+        let Ok(next) = fs::read_link(&end) else { break };
+        end = end.parent().map_or_else(|| next.clone(), |folder| folder.join(&next));
+    }
+    end
 }
 
 /// The same with content that is made while it is written: a large one need not be in memory.
@@ -119,6 +152,33 @@ mod tests {
         write(&path, b"second").unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"second");
         assert_eq!(names_in(folder.path()), ["summary.json"]);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_and_pipes_that_somebody_names_stay_what_they_are() {
+        use std::os::unix::fs::{FileTypeExt, symlink};
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        fs::create_dir(at("elsewhere")).unwrap();
+        fs::write(at("elsewhere/old.svg"), "old").unwrap();
+        symlink("elsewhere/old.svg", at("old.svg")).unwrap();
+        symlink("elsewhere/new.svg", at("new.svg")).unwrap();
+        for name in ["old.svg", "new.svg", "own.svg"] {
+            write_named(&at(name), name.as_bytes()).unwrap();
+            assert_eq!(fs::read_to_string(at(name)).unwrap(), name);
+            assert_eq!(at(name).is_symlink(), name != "own.svg");
+        }
+        assert_eq!(fs::read_to_string(at("elsewhere/old.svg")).unwrap(), "old.svg");
+        let pipe = at("pipe.svg");
+        assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+        let reader = std::thread::spawn({
+            let pipe = pipe.clone();
+            move || fs::read(pipe).unwrap()
+        });
+        write_named(&pipe, b"picture").unwrap();
+        assert_eq!(reader.join().unwrap(), b"picture");
+        assert!(fs::symlink_metadata(&pipe).unwrap().file_type().is_fifo());
     }
 
     #[test]

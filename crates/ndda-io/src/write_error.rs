@@ -161,7 +161,7 @@ fn advice(kind: io::ErrorKind) -> &'static str {
             "; choose a folder that you may write to with --out"
         }
         io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
-            "; free some space, choose another disk with --out, or lower output.frames"
+            "; free some space, or choose another disk with --out; a run writes less with fewer output.frames"
         }
         io::ErrorKind::NotADirectory => "; a part of this path is a file, choose another folder with --out",
         _ => "",
@@ -177,7 +177,9 @@ mod tests {
         let full = io::Error::from(io::ErrorKind::StorageFull);
         let text = WriteError::io("write", Path::new("out/history.csv"))(full).to_string();
         assert!(text.starts_with("cannot write out/history.csv: "), "{text}");
-        assert!(text.ends_with("free some space, choose another disk with --out, or lower output.frames"));
+        assert!(text.ends_with(
+            "free some space, or choose another disk with --out; a run writes less with fewer output.frames"
+        ));
     }
 
     #[test]

@@ -110,7 +110,7 @@ pub fn write(file: &Path, chosen: &[Chosen]) -> Result<(), String> {
     }
     let text = read::text_of(file).map_err(|errors| errors.render(false))?;
     let text = read::with_values(&text, chosen).map_err(|refused| refused.message)?;
-    ndda_io::atomic::write(file, text.as_bytes()).map_err(|error| error.to_string())
+    ndda_io::atomic::write_named(file, text.as_bytes()).map_err(|error| error.to_string())
 }
 
 /// What the blocks of a scene and their loads amount to.

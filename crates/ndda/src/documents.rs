@@ -17,6 +17,15 @@ pub(crate) fn write_json(path: &Path, document: &impl Serialize) -> Result<Strin
     Ok(json)
 }
 
+/// Whether a file is a document of a kind, such as `ndda.sweep`.
+pub(crate) fn is_of(path: &Path, kind: &str) -> bool {
+    let text = std::fs::read_to_string(path).unwrap_or_default();
+    let schema = serde_json::from_str(&text)
+        .ok()
+        .and_then(|json: serde_json::Value| Some(json.get("schema")?.as_str()?.to_string()));
+    schema.is_some_and(|schema| schema.split('/').next() == Some(kind))
+}
+
 /// Writes rows of cells as CSV.
 ///
 /// # Errors

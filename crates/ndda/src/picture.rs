@@ -71,7 +71,7 @@ pub fn write_svg(path: &Path, svg: String) -> Result<(), WriteError> {
         Some("png") => png(&svg).map_err(encode)?,
         _ => return Err(WriteError::PictureEnding { path: path.to_path_buf() }),
     };
-    atomic::write(path, &bytes)
+    atomic::write_named(path, &bytes)
 }
 
 fn svg(size: (u32, u32), draw: impl FnOnce(&Area) -> Drawn) -> Result<String, Box<dyn std::error::Error>> {

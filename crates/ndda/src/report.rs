@@ -72,7 +72,7 @@ pub fn write(folder: &Path, file: &Path, frames: Option<u32>) -> Result<Written,
         false => Some(Motion::read(&input.frames, &input.bolt_frames, frames.map(|n| n as usize))?),
     };
     let text = page::page(&input, motion.as_ref());
-    ndda_io::atomic::write(file, text.as_bytes())?;
+    ndda_io::atomic::write_named(file, text.as_bytes())?;
     Ok(Written {
         report: file.to_path_buf(),
         bytes: text.len(),

@@ -21,6 +21,7 @@ mod release;
 mod report;
 pub mod result;
 pub mod spread;
+mod stopped;
 mod terrain;
 #[cfg(test)]
 mod tests;
@@ -39,11 +40,11 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
+use ndda_io::WriteError;
 use ndda_io::code::Code;
 use ndda_io::diagnostic::SceneErrors;
 use ndda_io::read::LoadedScene;
 use ndda_io::scene::Rockfall;
-use ndda_io::{OutputFolder, WriteError};
 use rayon::prelude::*;
 
 use crate::places;
@@ -126,12 +127,7 @@ pub fn make(
     pool.install(|| {
         let model = Model::new(loaded, folder, (request.count, request.seed))?;
         let out = &request.out;
-        OutputFolder::refuse_run(out)?;
-        if !request.force && files::outcome(out).exists() {
-            return Err(RockfallError::Earlier(out.clone()));
-        }
-        std::fs::create_dir_all(out)
-            .map_err(|source| RockfallError::Folder { folder: out.clone(), source })?;
+        let _held = files::make_folder(out, request.force)?;
         let started = Instant::now();
         let falls = model.falls(stop, tell)?;
         let wall_s = started.elapsed().as_secs_f64();
@@ -153,6 +149,8 @@ pub struct Model {
     pub terrain: Terrain,
     /// Classes of ground that no zone names, and how many cells have them.
     pub unnamed: Vec<(u32, usize)>,
+    /// The part of the terrain that has neither a class nor a zone, in words.
+    pub bare: Option<String>,
 }
 
 impl Model {
@@ -176,8 +174,9 @@ impl Model {
         let classes = Classes::of(&rockfall, folder).map_err(|(path, message)| refuse(&path, message))?;
         let terrain = Terrain::new(&rockfall.terrain, folder, (&rockfall.zones, classes.as_ref()))
             .map_err(|message| refuse("rockfall.terrain", message))?;
-        let unnamed = classes.map_or_else(Vec::new, |classes| classes.without_zone(&rockfall));
-        let model = Self { rockfall, terrain, unnamed, loaded };
+        let unnamed = classes.as_ref().map_or_else(Vec::new, |classes| classes.without_zone(&rockfall));
+        let bare = classes.and_then(|classes| classes.leave_bare(&terrain));
+        let model = Self { rockfall, terrain, unnamed, bare, loaded };
         model.meets_the_terrain()?;
         let cells = model.reach_cells().map(|n| n as f64);
         if cells[0] * cells[1] > MOST_CELLS {
@@ -189,8 +188,7 @@ impl Model {
             return Err(RockfallError::Scene(model.loaded.errors(vec![found])));
         }
         let refused = (0..model.rockfall.count).into_par_iter().find_map_first(|k| model.case().refusal(k));
-        if let Some((release, reason)) = refused {
-            let path = format!("rockfall.releases[{release}].place");
+        if let Some((path, reason)) = refused {
             let found = model.loaded.diagnose_as(Code::CannotBuild, &path, reason);
             return Err(RockfallError::Scene(model.loaded.errors(vec![found])));
         }

@@ -139,7 +139,8 @@ impl Run {
     pub fn record(mut self, folder: OutputFolder, scene_file: PathBuf) -> Result<Self, WriteError> {
         self.name = name_of(&scene_file);
         let loaded = &self.model.loaded;
-        let identity = Identity::new(self.name.clone(), loaded.text.clone(), scene_file, &loaded.scene);
+        let mut identity = Identity::new(self.name.clone(), loaded.text.clone(), scene_file, &loaded.scene);
+        identity.sensitivity = self.sensitivity;
         self.record_as(identity, folder)
     }
 
@@ -159,9 +160,10 @@ impl Run {
         self
     }
 
-    /// When a twin of the run shows whether its motion is sensitive.
+    /// When a twin of the run shows whether its motion is sensitive; a run that goes on has what it began with.
     pub fn sensitivity(mut self, sensitivity: Sensitivity) -> Self {
         self.sensitivity = sensitivity;
+        self.recording.iter_mut().for_each(|recording| recording.identity.sensitivity = sensitivity);
         self
     }
 

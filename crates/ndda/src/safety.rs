@@ -30,7 +30,7 @@ use ndda_io::{OutputFolder, WriteError};
 use ndda_solver::StepError;
 use serde::{Deserialize, Serialize};
 
-use crate::documents::write_json;
+use crate::documents::{is_of, write_json};
 use crate::places;
 
 pub use changes::{By, Question};
@@ -279,6 +279,10 @@ pub fn file(out: &Path) -> PathBuf {
 /// The folder has the answer of another scene and is not to begin anew, is that of a run, or cannot be made.
 pub fn make_folder(out: &Path, name: &str, anew: bool) -> Result<(), SafetyError> {
     OutputFolder::refuse_run(out)?;
+    // Until its first trial has ended, an answer is an empty file.
+    let is_empty = std::fs::metadata(file(out)).is_ok_and(|found| found.len() == 0);
+    let has_earlier = is_empty || is_of(&file(out), "ndda.safety");
+    OutputFolder::refuse_others(out, has_earlier, &[places::SAFETY])?;
     if let Some(scene) = other_scene(out, name).filter(|_| !anew) {
         return Err(SafetyError::OtherScene { folder: out.to_path_buf(), scene });
     }

@@ -124,15 +124,29 @@ pub(crate) fn pinned(loaded: &LoadedStudy, overrides: &[String]) -> Vec<String> 
     [overrides.to_vec(), choose::as_overrides(&chosen)].concat()
 }
 
+/// Files that studies, sweeps, certificates and tuning write beside the folder of their cases.
+const NAMES: [&str; 9] = [
+    "study.json",
+    "study.csv",
+    "time_to_error.csv",
+    "sweep.json",
+    "sweep.csv",
+    "sweep_numbers.csv",
+    "sweep.parquet",
+    "certificate.json",
+    "tune.json",
+];
+
 /// Makes the folder of a study, which may hold an earlier part of it.
 ///
 /// # Errors
-/// [`StudyError::Write`] when it cannot be made, or is the folder of a run.
+/// [`StudyError::Write`] when it cannot be made, is the folder of a run, or has files of these names and no cases.
 pub fn make_folder(out: &Path) -> Result<(), StudyError> {
     if out.is_file() {
         return Err(WriteError::IsFile { path: out.to_path_buf() }.into());
     }
     OutputFolder::refuse_run(out)?;
+    OutputFolder::refuse_others(out, out.join("cases").is_dir(), &NAMES)?;
     let refused = |source| WriteError::Io { operation: "create the folder", path: out.to_path_buf(), source };
     Ok(std::fs::create_dir_all(out.join("cases")).map_err(refused)?)
 }

@@ -310,5 +310,5 @@ fn write_picture(film: &Film, look: Look, out: &Path) -> Result<(), ViewError> {
         #[cfg(not(feature = "png"))]
         false => return Err(ViewError::NoPng(out.to_path_buf())),
     };
-    Ok(ndda_io::atomic::write(out, &bytes)?)
+    Ok(ndda_io::atomic::write_named(out, &bytes)?)
 }

@@ -47,8 +47,8 @@ pub fn in_pool(how: &HowArgs, work: impl FnOnce(&Options) -> u8 + Send) -> u8 {
 pub struct Options {
     /// Whether a limit that is passed fails the run.
     pub strict: bool,
-    /// When a twin shows whether the motion is sensitive.
-    pub sensitivity: Sensitivity,
+    /// When a twin shows whether the motion is sensitive, where that is said.
+    pub sensitivity: Option<Sensitivity>,
     /// No progress and no result.
     pub quiet: bool,
     /// All tables at the end.
@@ -81,8 +81,8 @@ fn run_here(args: &RunArgs, options: &Options) -> u8 {
 
 /// Runs to the end and reports; the result is the exit code.
 pub fn execute(run: Run, folder: &Path, options: &Options) -> u8 {
-    let run = run.strict(options.strict).stop_when(interrupt::watch());
-    let run = run.sensitivity(options.sensitivity).tell(complain_unless(options.quiet));
+    let run = options.sensitivity.into_iter().fold(run, Run::sensitivity).strict(options.strict);
+    let run = run.stop_when(interrupt::watch()).tell(complain_unless(options.quiet));
     let (steps, simulation) = (run.model().steps(), &run.model().simulation);
     // Steps of settling are none of the run.
     let first = run.settling_steps().map_or(simulation.state().step, |_| 0);

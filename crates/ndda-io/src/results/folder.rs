@@ -1,6 +1,7 @@
 //! The output folder: made ready before the run begins, and never at the cost of somebody's files.
 
 mod earlier_run;
+mod shared;
 
 use std::fs::{self, File};
 use std::io::Write;

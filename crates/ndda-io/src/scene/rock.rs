@@ -123,6 +123,7 @@ pub enum Domain {
     },
     /// Rock under heights in a file: an ESRI ASCII grid (`.asc`), points of a regular grid (`.xyz`, `.txt`, `.csv`), a GeoTIFF (`.tif`, `.tiff`), or a surface of
     /// triangles (`.stl`), sampled at a two-hundredth of its longer side; faces as of `Terrain`. Cells with a corner without height are left out.
+    /// A first line of names (x, east; y, north; z, height, …) says which columns of points are which; without one they are x, y, z.
     TerrainFile {
         /// Path, relative to the scene file.
         file: String,

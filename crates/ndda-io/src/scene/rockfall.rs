@@ -52,7 +52,7 @@ pub struct Rockfall {
 #[serde(deny_unknown_fields)]
 pub enum Ground {
     /// Heights in a file: an ESRI ASCII grid (`.asc`), points of a regular grid (`.xyz`, `.txt`, `.csv`), a GeoTIFF (`.tif`, `.tiff`), or a surface of triangles
-    /// (`.stl`).
+    /// (`.stl`). A first line of names (x, east; y, north; z, height, …) says which columns of points are which; without one they are x, y, z.
     File {
         /// Path, relative to the scene file.
         file: String,
@@ -291,7 +291,7 @@ pub struct CountingLine {
     pub points_m: Vec<[f64; 2]>,
 }
 
-/// When a boulder has come to rest.
+/// When a boulder that touches the ground has come to rest.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]

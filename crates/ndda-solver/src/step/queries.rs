@@ -82,6 +82,11 @@ impl Simulation {
         self.contact.is_some()
     }
 
+    /// Whether contact takes energy from blocks that part, by a restitution below 1.
+    pub fn damps_contact(&self) -> bool {
+        self.contact.as_ref().is_some_and(|model| model.damps())
+    }
+
     /// Largest stable h = ω_c Δt; none where contact is solved for, or never stable.
     pub fn contact_bound(&self) -> Option<f64> {
         if self.newton.is_some() { None } else { self.problem.integrator.contact_bound() }

@@ -13,6 +13,9 @@ const HALVINGS: u32 = 60;
 /// Limits at which restitutions are cut off, and friction angles [°].
 pub(super) const RESTITUTIONS: (f64, f64) = (0.0, 1.0);
 pub(super) const FRICTIONS_DEG: (f64, f64) = (0.0, 89.0);
+/// Limits of heights [m] and speeds [m/s] of a release, and of dips [°].
+pub(super) const FROM_ZERO: (f64, f64) = (0.0, f64::INFINITY);
+pub(super) const DIPS_DEG: (f64, f64) = (-90.0, 90.0);
 /// Part of a distribution that is not worth a line where it is cut off.
 pub(super) const LITTLE: f64 = 1e-3;
 

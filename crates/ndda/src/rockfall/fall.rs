@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use ndda_io::scene::{Material, Rockfall, Scene};
+use ndda_io::scene::{CountingLine, Material, Rockfall, Scene};
 use ndda_mesh::Vec3;
 use ndda_solver::Simulation;
 use serde::{Deserialize, Serialize};
@@ -11,10 +11,10 @@ use super::accuracy::Accuracy;
 use super::boulder::Boulder;
 use super::contact::BOULDER;
 use super::draw::{Draw, FRICTIONS_DEG, Of, RESTITUTIONS};
-use super::passage::{Moment, crossing};
-use super::release;
+use super::passage::{Moment, crossing, distance_m};
 use super::terrain::Terrain;
 use super::window::{self, Cells, Laws, Motion};
+use super::{release, stopped};
 
 /// Longest step where the scene does not say [s].
 const STEP_S: f64 = 2e-3;
@@ -143,10 +143,21 @@ impl Case<'_> {
         (boulder, index, start, draw)
     }
 
-    /// Why the boulder with a number cannot be released, by the number of its release.
-    pub(super) fn refusal(&self, number: u32) -> Option<(usize, String)> {
+    /// Why the boulder with a number cannot be released, and the place in the scene that says it.
+    pub(super) fn refusal(&self, number: u32) -> Option<(String, String)> {
         let (_, release, start, _) = self.released(number);
-        start.err().map(|reason| (release, reason))
+        let [x, y] = match start {
+            Ok(motion) => [motion.center.x, motion.center.y],
+            Err(reason) => return Some((format!("rockfall.releases[{release}].place"), reason)),
+        };
+        let is_through =
+            |line: &CountingLine| distance_m(&line.points_m, [x, y]) <= self.terrain.rounding_m();
+        let k = self.rockfall.lines.iter().position(is_through)?;
+        let reason = format!(
+            "line `{}` passes through ({x:.3}, {y:.3}), where boulder {number} starts, so that rounding would decide whether it crosses the line: move one of them",
+            self.rockfall.lines[k].name
+        );
+        Some((format!("rockfall.lines[{k}].points_m"), reason))
     }
 
     /// The fall of the boulder with a number.
@@ -263,11 +274,10 @@ impl Watch<'_> {
         let end = loop {
             touches = match simulation.step() {
                 Ok(report) => report.contact.contact_pairs > 0,
-                Err(error) => break Some(End::Stopped(error.to_string())),
+                Err(error) => break Some(End::Stopped(stopped::with_a_cure(&error.to_string()))),
             };
             self.fall.steps += 1;
-            let time_s = since_s + simulation.time_s();
-            let end = self.see(simulation, time_s);
+            let end = self.see(simulation, since_s + simulation.time_s(), touches);
             if end.is_some() {
                 break end;
             }
@@ -289,7 +299,7 @@ impl Watch<'_> {
     }
 
     /// Takes note of a step; the end of the fall, if it is one.
-    fn see(&mut self, simulation: &Simulation, time_s: f64) -> Option<End> {
+    fn see(&mut self, simulation: &Simulation, time_s: f64, touches: bool) -> Option<End> {
         let now = self.moment(simulation, time_s);
         let before = std::mem::replace(&mut self.last, now);
         self.fall.largest.see(&now);
@@ -308,14 +318,14 @@ impl Watch<'_> {
             let reason = "the boulder went through the ground: raise rockfall.detail.impact_m_s".to_string();
             return Some(End::Stopped(reason));
         }
-        if self.rests(simulation, time_s) {
+        if self.rests(simulation, time_s, touches) {
             return Some(End::Rest);
         }
         (time_s >= self.case.scene.time.end_s).then_some(End::StillMoving)
     }
 
-    /// Whether no point has been fast for long enough.
-    fn rests(&mut self, simulation: &Simulation, time_s: f64) -> bool {
+    /// Whether no point has been fast for long enough, from one step in which the boulder touched the ground to another: in the air it may be slow for a while.
+    fn rests(&mut self, simulation: &Simulation, time_s: f64, touches: bool) -> bool {
         let rest = &self.case.rockfall.rest;
         let nodes = simulation.blocks().nodes_of(BOULDER);
         let velocity = &simulation.state().velocity[nodes];
@@ -323,7 +333,7 @@ impl Watch<'_> {
             self.slow_since_s = None;
             return false;
         }
-        time_s - *self.slow_since_s.get_or_insert(time_s) >= rest.over_s
+        touches && time_s - *self.slow_since_s.get_or_insert(time_s) >= rest.over_s
     }
 
     /// Keeps this moment in the path; where there are too many, every second of them is dropped, from then on.

@@ -1,22 +1,55 @@
 //! The outcome as files.
 
 use std::fmt::Write as _;
+use std::fs::File;
 use std::path::{Path, PathBuf};
 
-use ndda_io::{WriteError, atomic};
+use ndda_io::{OutputFolder, WriteError, atomic};
 
 use super::fall::{End, Fall};
 use super::passage::Moment;
 use super::profile::{self, Station};
 use super::result::Outcome;
 use super::spread::{AtLine, Spread};
-use super::{Model, map};
-use crate::documents::write_json;
+use super::{Model, RockfallError, map};
+use crate::documents::{is_of, write_json};
 use crate::places;
 
 /// File of the outcome in a folder.
 pub fn outcome(out: &Path) -> PathBuf {
     out.join(places::ROCKFALL)
+}
+
+/// All files of an outcome.
+const NAMES: [&str; 14] = [
+    places::ROCKFALL,
+    "boulders.csv",
+    "trajectories.csv",
+    "lines.csv",
+    "profiles.csv",
+    "reach.asc",
+    "map.svg",
+    "map.png",
+    "reach.svg",
+    "reach.png",
+    "profile.svg",
+    "profile.png",
+    "lines.svg",
+    "lines.png",
+];
+
+/// Makes the folder of an outcome and holds it until the answer is dropped; `anew` replaces an earlier outcome.
+///
+/// # Errors
+/// The folder has an earlier outcome that is not to be replaced, or files of somebody else, is that of a run, is in use, or cannot be made.
+pub fn make_folder(out: &Path, anew: bool) -> Result<Option<File>, RockfallError> {
+    OutputFolder::refuse_run(out)?;
+    std::fs::create_dir_all(out)
+        .map_err(|source| RockfallError::Folder { folder: out.to_path_buf(), source })?;
+    let held = OutputFolder::hold(out)?;
+    let has_earlier = is_of(&outcome(out), "ndda.rockfall");
+    OutputFolder::refuse_others(out, has_earlier, &NAMES)?;
+    if has_earlier && !anew { Err(RockfallError::Earlier(out.to_path_buf())) } else { Ok(held) }
 }
 
 /// Writes all files of an outcome but pictures into a folder.

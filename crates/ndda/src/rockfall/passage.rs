@@ -75,6 +75,16 @@ pub(super) fn crossing(line_m: &[[f64; 2]], a: [f64; 2], b: [f64; 2]) -> Option<
 
 /// Distance from the start of a line through corners to the place on it that is nearest to a point [m].
 pub(super) fn chainage_m(line_m: &[[f64; 2]], at_m: [f64; 2]) -> f64 {
+    nearest_m(line_m, at_m).1
+}
+
+/// Distance of a point from a line through corners [m].
+pub(super) fn distance_m(line_m: &[[f64; 2]], at_m: [f64; 2]) -> f64 {
+    nearest_m(line_m, at_m).0
+}
+
+/// Distance of a point from the nearest place on a line through corners, and of that from the start of the line [m].
+fn nearest_m(line_m: &[[f64; 2]], at_m: [f64; 2]) -> (f64, f64) {
     let (mut before, mut best) = (0.0, (f64::INFINITY, 0.0));
     for piece in line_m.windows(2) {
         let along = [0, 1].map(|i| piece[1][i] - piece[0][i]);
@@ -90,7 +100,7 @@ pub(super) fn chainage_m(line_m: &[[f64; 2]], at_m: [f64; 2]) -> f64 {
         }
         before += length;
     }
-    best.1
+    best
 }
 
 /// Length of a line through corners [m].
@@ -132,6 +142,7 @@ mod tests {
         assert_eq!(chainage_m(&line, [1.0, 2.0]), 1.0);
         assert_eq!(chainage_m(&line, [5.0, 3.0]), 6.0);
         assert_eq!(chainage_m(&line, [-5.0, 3.0]), 0.0);
+        assert_eq!((distance_m(&line, [1.0, 2.0]), distance_m(&line, [3.0, 2.0])), (2.0, 0.0));
         assert_eq!((length_m(&line), point_at(&line, 5.0)), (7.0, [3.0, 2.0]));
     }
 }

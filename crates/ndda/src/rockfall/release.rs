@@ -4,7 +4,7 @@ use ndda_io::scene::{Release, ReleasePlace, Rockfall, Scatter};
 use ndda_mesh::{Mat3, Vec3};
 
 use super::boulder::Boulder;
-use super::draw::{Draw, Of};
+use super::draw::{DIPS_DEG, Draw, FROM_ZERO, Of};
 use super::passage::{length_m, point_at};
 use super::terrain::{Terrain, is_inside};
 use super::window::{Cells, Motion};
@@ -75,12 +75,12 @@ pub(super) fn start(
     let value =
         |of, scatter: &Option<Scatter>, limits| scatter.as_ref().map(|s| draw.value(of, 0, s, limits));
     let all = (f64::NEG_INFINITY, f64::INFINITY);
-    let height_m = value(Of::Height, &release.height_m, (0.0, f64::INFINITY)).unwrap_or(0.0);
-    let speed = value(Of::Speed, &release.speed_m_s, (0.0, f64::INFINITY)).unwrap_or(0.0);
+    let height_m = value(Of::Height, &release.height_m, FROM_ZERO).unwrap_or(0.0);
+    let speed = value(Of::Speed, &release.speed_m_s, FROM_ZERO).unwrap_or(0.0);
     let azimuth_deg = value(Of::Azimuth, &release.azimuth_deg, all);
     let forward = azimuth_deg.map_or_else(|| downhill(slope), heading);
     let fall = -(slope[0] * forward.x + slope[1] * forward.y);
-    let dip = match value(Of::Dip, &release.dip_deg, (-90.0, 90.0)) {
+    let dip = match value(Of::Dip, &release.dip_deg, DIPS_DEG) {
         Some(dip_deg) => dip_deg.to_radians(),
         None if azimuth_deg.is_none() => fall.atan(),
         None => 0.0,

@@ -38,10 +38,9 @@ impl fmt::Display for Model {
             write!(f, "\nclass {class}, of {cells}, belongs to no zone: it has `ground`")?;
         }
         if self.unnamed.len() > LISTED {
-            write!(f, "\nand {} more", self.unnamed.len() - LISTED)
-        } else {
-            Ok(())
+            write!(f, "\nand {} more", self.unnamed.len() - LISTED)?;
         }
+        self.bare.iter().try_for_each(|bare| write!(f, "\n{bare}"))
     }
 }
 

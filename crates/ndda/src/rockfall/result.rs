@@ -1,10 +1,10 @@
 //! What all boulders together come to.
 
-use ndda_io::scene::{CountingLine, Rockfall};
+use ndda_io::scene::{CountingLine, Release, Rockfall, Scatter};
 use serde::{Deserialize, Serialize};
 
 use super::accuracy::Accuracy;
-use super::draw::{self, FRICTIONS_DEG, LITTLE, RESTITUTIONS};
+use super::draw::{self, DIPS_DEG, FRICTIONS_DEG, FROM_ZERO, LITTLE, RESTITUTIONS};
 use super::fall::{End, Fall};
 use super::passage::{Moment, length_m};
 use super::profile;
@@ -88,7 +88,7 @@ pub struct LineResult {
     pub first: Option<AtLine>,
 }
 
-/// Falls that are not accurate.
+/// Falls that are not accurate, or were not computed to their end.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Inaccurate {
     /// How many.
@@ -124,8 +124,8 @@ impl Outcome {
             part_m: part_m.max(length_m(&profile_m) / profile::MOST_STATIONS),
             profile_m,
             accuracy: Inaccurate {
-                inaccurate: falls.iter().filter(|fall| !fall.accuracy.is_accurate()).count(),
-                reasons: worst.reasons(model.step_s(), model.rockfall.detail.impact_m_s),
+                inaccurate: falls.iter().filter(|fall| !is_accurate(fall)).count(),
+                reasons: reasons(model, falls, &worst),
                 worst,
             },
             warnings: warnings(model, falls),
@@ -133,6 +133,20 @@ impl Outcome {
             wall_s,
         }
     }
+}
+
+/// Whether a fall was computed to its end, with errors within their limits.
+fn is_accurate(fall: &Fall) -> bool {
+    !matches!(fall.end, End::Stopped(_)) && fall.accuracy.is_accurate()
+}
+
+/// What makes falls inaccurate, and what to change.
+fn reasons(model: &Model, falls: &[Fall], worst: &Accuracy) -> Vec<String> {
+    let stopped = ends(falls).stopped;
+    let count = counted(stopped, "fall was", "falls were");
+    let unfinished = (stopped > 0).then(|| format!("{count} not computed to the end, as the warning says"));
+    let beyond = worst.reasons(model.step_s(), model.rockfall.detail.impact_m_s);
+    unfinished.into_iter().chain(beyond).collect()
 }
 
 fn ends(falls: &[Fall]) -> Ends {
@@ -185,7 +199,9 @@ fn warnings(model: &Model, falls: &[Fall]) -> Vec<String> {
             ends.stopped
         ));
     }
+    warnings.extend(model.bare.clone());
     warnings.extend(laws_cut_off(model));
+    warnings.extend(releases_cut_off(model));
     warnings
 }
 
@@ -200,16 +216,40 @@ fn laws_cut_off(model: &Model) -> Vec<String> {
         for (what, scatter, limits) in
             [("restitution", restitution, RESTITUTIONS), ("friction_deg", friction_deg, FRICTIONS_DEG)]
         {
-            let part = draw::cut_off(scatter, limits);
-            if part > LITTLE {
-                found.push(format!(
-                    "{what} of {name}: {:.1} % of its distribution lies beyond {} to {} and is cut off; give it a smaller spread, or a `Triangular` one",
-                    100.0 * part, limits.0, limits.1
-                ));
-            }
+            found.extend(cut_off(what, &name, scatter, limits));
         }
     }
     found
+}
+
+/// Heights, speeds and dips of releases of which a part of the distribution is cut off.
+fn releases_cut_off(model: &Model) -> Vec<String> {
+    let of_release = |release: &Release| {
+        let Release { name, height_m, speed_m_s, dip_deg, .. } = release;
+        let name = format!("release `{name}`");
+        let all = [
+            ("height_m", height_m, FROM_ZERO),
+            ("speed_m_s", speed_m_s, FROM_ZERO),
+            ("dip_deg", dip_deg, DIPS_DEG),
+        ];
+        all.map(|(what, scatter, limits)| cut_off(what, &name, scatter.as_ref()?, limits))
+    };
+    model.rockfall.releases.iter().flat_map(of_release).flatten().collect()
+}
+
+/// That a part of a distribution is cut off, where it is not little.
+fn cut_off(what: &str, of: &str, scatter: &Scatter, limits: (f64, f64)) -> Option<String> {
+    let part = draw::cut_off(scatter, limits);
+    let beyond = match limits {
+        FROM_ZERO => "below 0".to_string(),
+        (least, most) => format!("beyond {least} to {most}"),
+    };
+    (part > LITTLE).then(|| {
+        format!(
+            "{what} of {of}: {:.1} % of its distribution lies {beyond} and is cut off; give it a smaller spread, or a `Triangular` one",
+            100.0 * part
+        )
+    })
 }
 
 /// A boulder when it first reaches the line with a number; none if it does not.

@@ -14,6 +14,8 @@ const LEAST_STEP_M: f64 = 1e-3;
 const MOST_M: f64 = 1e9;
 /// Steepest ground: heights of neighbours that differ by more times their distance stand for something else.
 const STEEPEST: f64 = 500.0;
+/// Part of the size of the terrain, and of its coordinates, that rounding stays below.
+const ROUNDING: f64 = 1e-9;
 /// No height of ground is as large [m].
 const MOST_HEIGHT_M: f64 = 1e5;
 
@@ -118,6 +120,12 @@ impl Terrain {
         self.zones[j * self.cells()[0] + i]
     }
 
+    /// Middles on the map of both triangles of a cell, in the same order [m].
+    pub(super) fn middles_m(&self, i: usize, j: usize) -> [[f64; 2]; 2] {
+        let (i, j) = (i as f64, j as f64);
+        [[2.0 / 3.0, 1.0 / 3.0], [1.0 / 3.0, 2.0 / 3.0]].map(|[u, v]| self.map_m([i + u, j + v]))
+    }
+
     /// Place on the map [m] of a place in steps of the grid.
     pub fn map_m(&self, [u, v]: [f64; 2]) -> [f64; 2] {
         [self.origin_m[0] + u * self.step_m[0], self.origin_m[1] + v * self.step_m[1]]
@@ -164,6 +172,13 @@ impl Terrain {
         [self.origin_m, self.map_m(self.cells().map(|n| n as f64))]
     }
 
+    /// Distance on the map below which places are the same but for rounding [m].
+    pub(super) fn rounding_m(&self) -> f64 {
+        let [least, most] = self.bounds_m();
+        let largest = |axis: usize| (most[axis] - least[axis]) + least[axis].abs().max(most[axis].abs());
+        ROUNDING * largest(0).max(largest(1))
+    }
+
     /// Least and largest height [m].
     pub fn heights_m(&self) -> (f64, f64) {
         let known = self.heights_m.iter().filter(|z| z.is_finite());
@@ -178,9 +193,7 @@ impl Terrain {
             return (found, held);
         }
         for (k, zones_of_cell) in found.iter_mut().enumerate() {
-            let (i, j) = ((k % nx) as f64, (k / nx) as f64);
-            for (half, [u, v]) in [[2.0 / 3.0, 1.0 / 3.0], [1.0 / 3.0, 2.0 / 3.0]].into_iter().enumerate() {
-                let middle = self.map_m([i + u, j + v]);
+            for (half, middle) in self.middles_m(k % nx, k / nx).into_iter().enumerate() {
                 let class = classes.and_then(|classes| classes.at(middle));
                 let holds = |zone: &Zone| match class {
                     _ if !zone.outline_m.is_empty() => is_inside(&zone.outline_m, middle),
@@ -324,6 +337,9 @@ mod tests {
         let terrain = Terrain::new(&ground, Path::new("."), (&zones, Some(&classes))).unwrap();
         // Middles at 10 + 4/3 and 10 + 2/3, and at 12 + 4/3 and 12 + 2/3.
         assert_eq!((terrain.zones_at(0, 0), terrain.zones_at(1, 0)), ([1, 2], [0, 0]));
+        // One of four triangles is beyond the grid of classes; the other without a zone has a class that none names.
+        let bare = classes.leave_bare(&terrain).unwrap_or_default();
+        assert!(bare.contains("25.00 % of the terrain, 1 triangles between (13.3, 21.3) and"), "{bare}");
     }
 
     #[test]

@@ -7,6 +7,8 @@ use ndda_io::outside_files::OutsideFile;
 use ndda_io::scene::Scene;
 use serde::{Deserialize, Serialize};
 
+use super::twin::Sensitivity;
+
 /// Which scene a run is of.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Identity {
@@ -18,13 +20,15 @@ pub struct Identity {
     pub file: PathBuf,
     /// The files that the scene names, as they were when the run began.
     pub outside: Vec<OutsideFile>,
+    /// When it is repeated after its end.
+    pub sensitivity: Sensitivity,
 }
 
 impl Identity {
     /// Of a scene that is read from `file`, by its text and the files that it names.
     pub fn new(name: String, text: String, file: PathBuf, scene: &Scene) -> Self {
         let outside = OutsideFile::all_of(scene, folder_of(&file));
-        Self { name, text, file, outside }
+        Self { name, text, file, outside, sensitivity: Sensitivity::default() }
     }
 
     /// Folder of the scene.

@@ -103,6 +103,7 @@ impl Run {
             run.model.simulation = model::in_stage(loaded, meshes, blocks, earlier.stages.at)?;
         }
         run.name = name_of(&identity.file);
+        run.sensitivity = identity.sensitivity;
         run.built = Some(run.model.simulation.start_snapshot());
         let restored = run.model.simulation.restore(snapshot);
         restored.map_err(|error| ResumeError::DoesNotFit(error.to_string()))?;

@@ -19,6 +19,7 @@ use ndda_io::read::LoadedScene;
 use ndda_mesh::geometry::Aabb;
 use ndda_mesh::{BlockId, Vec3};
 use ndda_solver::{BodyKind, Settle, Simulation, StartSnapshot, StepError};
+use serde::{Deserialize, Serialize};
 
 use super::unless_ended;
 use crate::judge::words::SECOND_RUN;
@@ -27,7 +28,7 @@ pub(super) use parted::Parted;
 use parted::{farthest_m, height_m, parted};
 
 /// Whether twins of the run are run after it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Sensitivity {
     /// After an accurate run that is short or has no contact, or in which three or more blocks have moved, or two that end beside each other, or in which one has
     /// hopped several times with friction in between, or hit twice or more.

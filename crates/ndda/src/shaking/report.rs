@@ -59,11 +59,11 @@ pub(super) fn write_tables(shaking: &Shaking, motion: &Motion) -> Result<(), Wri
         let (a, v, u) = (motion.acceleration[i], motion.velocity[i], motion.displacement[i]);
         writeln!(text, "{time_s},{a},{v},{u}").expect("a string takes all");
     }
-    atomic::write(&shaking.tables[0], text.as_bytes())?;
+    atomic::write_named(&shaking.tables[0], text.as_bytes())?;
     let mut text = String::from("period_s,displacement_m,pseudo_velocity_m_s,pseudo_acceleration_m_s2\n");
     for r in &shaking.spectrum {
         let values = (r.period_s, r.displacement_m, r.pseudo_velocity_m_s, r.pseudo_acceleration_m_s2);
         writeln!(text, "{},{},{},{}", values.0, values.1, values.2, values.3).expect("a string takes all");
     }
-    atomic::write(&shaking.tables[1], text.as_bytes())
+    atomic::write_named(&shaking.tables[1], text.as_bytes())
 }

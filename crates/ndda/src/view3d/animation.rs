@@ -45,7 +45,7 @@ pub fn write(film: &Film, look: Look, per_second: u16, path: &Path) -> Result<()
         sink.push(&rgba)?;
     }
     match sink.finish()? {
-        Some(bytes) => Ok(ndda_io::atomic::write(path, &bytes)?),
+        Some(bytes) => Ok(ndda_io::atomic::write_named(path, &bytes)?),
         None => Ok(()),
     }
 }

@@ -25,7 +25,7 @@ pub(crate) fn write(path: &Path, bodies: &[(String, BlockMesh)]) -> Result<(), W
         }
     }
     let text = text(&joined).expect("a String takes all that is written to it");
-    atomic::write(path, text.as_bytes())
+    atomic::write_named(path, text.as_bytes())
 }
 
 fn text(joined: &Joined) -> Result<String, std::fmt::Error> {

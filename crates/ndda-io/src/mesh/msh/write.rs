@@ -23,7 +23,7 @@ pub(crate) fn write(path: &Path, bodies: &[(String, BlockMesh)]) -> Result<(), W
         .and_then(|()| nodes(&mut text, &joined))
         .and_then(|()| elements(&mut text, &joined));
     written.expect("a String takes all that is written to it");
-    atomic::write(path, text.as_bytes())
+    atomic::write_named(path, text.as_bytes())
 }
 
 /// Names of the groups, and an entity for each.

@@ -65,7 +65,7 @@ pub fn write_blocks(path: &Path, blocks: &Blocks) -> Result<(), WriteError> {
         return Err(WriteError::not_finite(path, "vertex", Some(index)));
     }
     let text = objects(blocks).expect("a String takes all that is written to it");
-    atomic::write(path, text.as_bytes())
+    atomic::write_named(path, text.as_bytes())
 }
 
 fn objects(blocks: &Blocks) -> Result<String, std::fmt::Error> {

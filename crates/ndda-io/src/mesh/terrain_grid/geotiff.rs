@@ -2,6 +2,7 @@
 
 mod bytes;
 mod pixels;
+mod units;
 
 use super::{MOST_HEIGHTS, NO_DATA, TerrainGrid};
 use crate::mesh::error::{Fault, FileProblem};
@@ -26,15 +27,12 @@ const PIXEL_SCALE: u16 = 33550;
 const TIE_POINT: u16 = 33922;
 const TRANSFORMATION: u16 = 34264;
 const GEO_KEYS: u16 = 34735;
+const GDAL_METADATA: u16 = 42112;
 const GDAL_NO_DATA: u16 = 42113;
 
-/// Keys of GeoTIFF: kind of coordinates, what a pixel is, unit of length.
-const MODEL_TYPE: u64 = 1024;
+/// Key of GeoTIFF: what a pixel is.
 const RASTER_TYPE: u64 = 1025;
-const LINEAR_UNITS: u64 = 3076;
-const GEOGRAPHIC: u64 = 2;
 const PIXEL_IS_POINT: u64 = 2;
-const METRE: u64 = 9001;
 
 /// Reads the first image of a file.
 pub(super) fn read(bytes: &[u8]) -> Result<TerrainGrid, Fault> {
@@ -42,18 +40,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<TerrainGrid, Fault> {
     let keys = ifd.get(GEO_KEYS).map(Entry::whole_numbers).transpose()?.unwrap_or_default();
     let key =
         |id: u64| keys.get(4..)?.chunks_exact(4).find(|key| key[0] == id && key[1] == 0).map(|key| key[3]);
-    if key(MODEL_TYPE) == Some(GEOGRAPHIC) {
-        return Err(not_read(
-            "a grid in degrees",
-            "reproject it to metres, as with gdalwarp -t_srs EPSG:32632 (take the code of your map grid)",
-        ));
-    }
-    if let Some(unit) = key(LINEAR_UNITS).filter(|unit| *unit != METRE) {
-        return Err(not_read(
-            format!("a grid in the unit of EPSG {unit}"),
-            "reproject it to metres, as with gdalwarp",
-        ));
-    }
+    let metadata = ifd.get(GDAL_METADATA).map(Entry::text).transpose()?;
+    units::are_metres(&key, metadata.as_deref())?;
     let size = [ifd.number(WIDTH)?, ifd.number(HEIGHT)?];
     if size.iter().any(|n| *n < 2) || size[0].saturating_mul(size[1]) > MOST_HEIGHTS {
         let what = format!("a grid of {} × {} heights", size[0], size[1]);
@@ -208,6 +196,14 @@ mod tests {
         );
         assert!(with(&|e| e.retain(|entry| entry.0 != PIXEL_SCALE)).contains("ModelPixelScale"));
         assert!(with(&|e| e[4].3 = u32::MAX).contains("truncated"));
+        // Heights in feet: a list of keys behind the numbers of the grid.
+        let keys = [1u16, 1, 0, 1, 4099, 0, 1, 9002].into_iter().flat_map(u16::to_le_bytes);
+        let data: Vec<u8> = floats().into_iter().chain(keys).collect();
+        let in_feet = said(&file((3, 32), &data, 1, |e| {
+            let at_keys = e[4].3 + 24;
+            e.insert(11, (GEO_KEYS, 3, 8, at_keys));
+        }));
+        assert!(in_feet.contains("EPSG 9002 (feet)"), "{in_feet}");
     }
 
     proptest::proptest! {

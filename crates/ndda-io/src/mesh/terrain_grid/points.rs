@@ -1,8 +1,11 @@
-//! Heights as points (x, y, z) of a regular grid, a line each, in any order.
+//! Heights as points (x, y, z) of a regular grid, a line each, in any order; a first line may name the columns.
+
+mod header;
 
 use super::{MOST_HEIGHTS, POINT, TerrainGrid, decimal_comma};
 use crate::mesh::error::{Fault, FileProblem};
-use crate::mesh::lines::{Lines, parse};
+use crate::mesh::lines::{Line, Lines};
+use header::Columns;
 
 /// How far a point may be from its place in the grid, in steps of that.
 const OFF: f64 = 0.01;
@@ -11,23 +14,12 @@ const SAME: f64 = 1e-7;
 /// Places of a grid per point, above which points are on none.
 const MOST_SPARSE: u64 = 64;
 
-/// Reads points of a regular grid; words in the first line are names of columns.
+/// Reads points of a regular grid.
 pub(super) fn read(bytes: &[u8]) -> Result<TerrainGrid, Fault> {
-    // As Lines have it, but that semicolons separate numbers, too.
-    let text: Vec<u8> = bytes.iter().map(|&b| if b == b';' { b' ' } else { b }).collect();
+    let (columns, names) = Columns::of(bytes)?.unzip();
     let mut points: Vec<(usize, [f64; 3])> = Vec::new();
-    for (k, mut line) in Lines::new(&text, b'#').enumerate() {
-        if k == 0 && line.clone().word().is_some_and(|word| parse::<f64>(word).is_none()) {
-            continue;
-        }
-        let number = line.number;
-        // Three words and more need no commas between them.
-        let words = line.text.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).count();
-        if let Some(word) = decimal_comma(line.text).filter(|_| words >= 3) {
-            return Err(Fault::unexpected(number, POINT, word));
-        }
-        let point = line.point()?;
-        points.push((number, [point.x, point.y, point.z]));
+    for line in Lines::new(bytes, b'#').filter(|line| Some(line.number) != names) {
+        points.push((line.number, point(&line, columns.as_ref())?));
     }
     if points.len() < 4 {
         return Err(Fault::truncated(format!("point {} of at least 4", points.len() + 1)));
@@ -71,6 +63,21 @@ pub(super) fn read(bytes: &[u8]) -> Result<TerrainGrid, Fault> {
     Ok(TerrainGrid { origin_m: [x0, y0], step_m: [dx, dy], heights_m })
 }
 
+/// The point in a line.
+fn point(line: &Line, columns: Option<&Columns>) -> Result<[f64; 3], Fault> {
+    // As Lines have it, but that semicolons separate numbers, too.
+    let text: Vec<u8> = line.text.iter().map(|&b| if b == b';' { b' ' } else { b }).collect();
+    // Three words and more need no commas between them.
+    let words = text.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).count();
+    if let Some(word) = decimal_comma(&text).filter(|_| words >= 3) {
+        return Err(Fault::unexpected(line.number, POINT, word));
+    }
+    match columns {
+        Some(columns) => columns.point(line),
+        None => Ok(Line { number: line.number, text: &text }.point()?.into()),
+    }
+}
+
 /// First coordinate along an axis, the least distance of two, and how many places that makes; none if all are the same.
 fn axis(points: &[(usize, [f64; 3])], axis: usize) -> Option<(f64, f64, u64)> {
     let mut along: Vec<f64> = points.iter().map(|(_, point)| point[axis]).collect();
@@ -105,6 +112,26 @@ mod tests {
     }
 
     #[test]
+    fn columns_are_found_by_their_names() {
+        let rows =
+            [[12.0, 20.0, 3.0], [10.0, 20.0, 1.0], [11.0, 20.0, 2.0], [10.0, 25.0, 4.0], [12.0, 25.0, 6.0]];
+        let table = |names: &str, row: &dyn Fn([f64; 3]) -> String| {
+            let lines: String = rows.iter().map(|point| row(*point) + "\n").collect();
+            read(format!("{names}\n{lines}").as_bytes())
+        };
+        let plain = table("x y z", &|[x, y, z]| format!("{x} {y} {z}")).unwrap();
+        assert_eq!((plain.origin_m, plain.step_m), ([10.0, 20.0], [1.0, 5.0]));
+        let swapped = table("north,east,height", &|[x, y, z]| format!("{y},{x},{z}"));
+        assert_eq!(swapped.unwrap(), plain);
+        let comment = table("# a slope\n# columns: Y X Z", &|[x, y, z]| format!("{y} {x} {z}"));
+        assert_eq!(comment.unwrap(), plain);
+        let quoted = table("\"id\";\"Z [m]\";\"N_m\";\"E_m\"", &|[x, y, z]| format!(";{z};{y};{x}"));
+        assert_eq!(quoted.unwrap(), plain);
+        // Comments that name no columns are none, and lines without names have x, y, z first.
+        assert_eq!(table("# heights of the slope", &|[x, y, z]| format!("{x} {y} {z} 7")).unwrap(), plain);
+    }
+
+    #[test]
     fn points_beside_a_grid_are_refused_with_line_and_cure() {
         for (text, part) in [
             ("0 0 1\n1 0 1\n0 1 1\n1.4 1 1\n2.4 1 1", "a.xyz:2: a point (1, 0) beside the grid of 0.4 × 1 m"),
@@ -117,6 +144,9 @@ mod tests {
                 "0 0 1\n1 0 1,5",
                 "a.xyz:2: expected a number whose decimals come after a point, as 2.5, found `1,5`",
             ),
+            ("y x dsm\n0 0 1", "a.xyz:1: a table of points whose columns are `y`, `x`, `dsm`"),
+            ("x y z\n1 0 0 1", "a.xyz:2: expected as many columns as the first line names, 3, found `4`"),
+            ("a 0 1\n1 0 0", "a.xyz:1: expected a coordinate, finite, found `a`"),
             (
                 "x;y;z\n0,5;0;1",
                 "a.xyz:2: expected a number whose decimals come after a point, as 2.5, found `0,5`",

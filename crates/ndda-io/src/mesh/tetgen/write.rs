@@ -22,7 +22,7 @@ pub(crate) fn write(path: &Path, bodies: &[(String, BlockMesh)]) -> Result<(), W
     let content = nodes(&joined).and_then(|n| Ok([n, tets(&joined)?, faces(&joined)?]));
     let content = content.expect("a String takes all that is written to it");
     for (ending, text) in ["node", "ele", "face"].into_iter().zip(content) {
-        atomic::write(&path.with_extension(ending), text.as_bytes())?;
+        atomic::write_named(&path.with_extension(ending), text.as_bytes())?;
     }
     Ok(())
 }

@@ -48,5 +48,5 @@ pub fn write(path: &Path, blocks: &Blocks) -> Result<(), WriteError> {
     grid.integers("faces", faces.into_iter());
     grid.integers("faceoffsets", face_ends.into_iter());
     grid.close("Cells");
-    atomic::write(path, &grid.finish())
+    atomic::write_named(path, &grid.finish())
 }

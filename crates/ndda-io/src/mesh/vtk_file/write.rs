@@ -41,5 +41,5 @@ pub(crate) fn write(path: &Path, bodies: &[(String, BlockMesh)]) -> Result<(), W
     grid.integers("offsets", (1..=joined.tets.len() as i64).map(|tet| 4 * tet));
     grid.bytes("types", &vec![TETRA; joined.tets.len()]);
     grid.close("Cells");
-    atomic::write(path, &grid.finish())
+    atomic::write_named(path, &grid.finish())
 }

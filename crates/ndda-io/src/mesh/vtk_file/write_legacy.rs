@@ -50,7 +50,7 @@ pub(crate) fn write(path: &Path, bodies: &[(String, BlockMesh)]) -> Result<(), W
     };
     let mut bytes = Vec::new();
     file.write_legacy(&mut bytes).map_err(|error| refuse(format!("vtkio: {error:?}")))?;
-    atomic::write(path, &bytes)
+    atomic::write_named(path, &bytes)
 }
 
 /// One number per point or cell.

@@ -57,13 +57,10 @@ impl Check<'_> {
         }
         self.names("rockfall.lines", &rockfall.lines.iter().map(|l| l.name.as_str()).collect::<Vec<_>>());
         for (i, line) in rockfall.lines.iter().enumerate() {
-            self.corners(&format!("rockfall.lines[{i}].points_m"), &line.points_m, 2);
+            self.corners_apart(&format!("rockfall.lines[{i}].points_m"), &line.points_m);
         }
-        if let Some(first) = rockfall.profile_m.first() {
-            self.corners("rockfall.profile_m", &rockfall.profile_m, 2);
-            if rockfall.profile_m.iter().all(|corner| corner == first) {
-                self.error("rockfall.profile_m", "has no length", "give corners that are apart");
-            }
+        if !rockfall.profile_m.is_empty() {
+            self.corners_apart("rockfall.profile_m", &rockfall.profile_m);
         }
         if rockfall.zones.len() > MOST_ZONES {
             let message = format!("{} zones are more than {MOST_ZONES}", rockfall.zones.len());
@@ -80,6 +77,14 @@ impl Check<'_> {
             [("path_m", detail.path_m), ("cell_m", detail.cell_m), ("part_m", detail.part_m)]
         {
             value.into_iter().for_each(|v| self.positive(format!("rockfall.detail.{field}"), v, "m"));
+        }
+    }
+
+    /// Corners of a line that has a length.
+    fn corners_apart(&mut self, path: &str, corners: &[[f64; 2]]) {
+        self.corners(path, corners, 2);
+        if corners.len() > 1 && corners.iter().all(|corner| *corner == corners[0]) {
+            self.error(path, "has no length", "give corners that are apart");
         }
     }
 

@@ -35,7 +35,7 @@ pub(crate) struct Parted {
     /// How many blocks differ more than allowed, and the worst by how many times that.
     blocks: usize,
     times: f64,
-    /// Whether a block hopped many times with friction in between.
+    /// Whether a block hopped many times with friction in between, on contact that is not damped.
     hops: bool,
     /// Whether a block hit several times.
     hits_again: bool,
@@ -117,7 +117,7 @@ pub(super) fn parted(
         faster_m_s: (!is_elsewhere).then_some(worst.faster_m_s),
         blocks: all.iter().filter(|one| over(one) > 1.0).count(),
         times: over(worst),
-        hops: hops(simulation),
+        hops: hops(simulation) && !simulation.damps_contact(),
         hits_again: hits_again(simulation),
     })
 }

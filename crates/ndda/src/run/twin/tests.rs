@@ -52,6 +52,17 @@ fn cubes_that_slide_side_by_side_are_not_sensitive_though_they_part() {
 
 #[test]
 fn a_cube_that_hops_on_undamped_contact_is_sensitive_in_its_velocity_and_told_how_to_end_that() {
+    let undamped = pulled("");
+    assert!(
+        undamped.contains("with other velocities") && undamped.contains("restitution of 0.5"),
+        "{undamped}"
+    );
+    let damped = pulled("restitution: 0.99,");
+    assert!(damped.contains("with other velocities") && !damped.contains("not damped"), "{damped}");
+}
+
+/// Why a cube that gravity loads suddenly, and that is pulled, is sensitive; `contact` is more of the contact.
+fn pulled(contact: &str) -> String {
     let text = "(title: \"pulled\", time: (step_s: 3e-5, end_s: 1), gravity_m_s2: (3.92, 0, -9.81),
         materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.2, density_kg_m3: 2600)],
         blocks: [
@@ -59,10 +70,11 @@ fn a_cube_that_hops_on_undamped_contact_is_sensitive_in_its_velocity_and_told_ho
             (name: \"cube\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), at_m: (1, 0.5, 0)),
         ],
         contact: Potential(penalty_pa: 2e8, friction: (friction_deg: 35)))";
-    let summary = Run::new(Model::from_text(text).unwrap()).finish(&mut []).unwrap().summary;
+    let text = text.replace("Potential(", &format!("Potential({contact}"));
+    let summary = Run::new(Model::from_text(&text).unwrap()).finish(&mut []).unwrap().summary;
     let reason = summary.label.reasons.join("; ");
     assert_eq!(summary.label.word, LabelWord::Sensitive, "{reason}");
-    assert!(reason.contains("with other velocities") && reason.contains("restitution of 0.5"), "{reason}");
+    reason
 }
 
 #[test]
@@ -160,4 +172,23 @@ fn a_raft_that_its_steps_do_not_resolve_is_inaccurate_although_nothing_touches_i
     let ((long, off), (short, little)) = (raft(0.2), raft(0.01));
     assert!(long == LabelWord::Inaccurate && off > 1.0, "{long:?} {off}");
     assert!(short == LabelWord::Accurate && little < 0.01, "{short:?} {little}");
+}
+
+#[test]
+fn a_run_that_goes_on_is_repeated_as_it_began() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("cube.ron");
+    let text = "(title: \"cube\", time: (step_s: 1e-3, end_s: 1), gravity_m_s2: (0, 0, -9.81),
+        materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.2, density_kg_m3: 2600)],
+        blocks: [(name: \"cube\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)))])";
+    std::fs::write(&file, text).unwrap();
+    for asked in [Sensitivity::Always, Sensitivity::Never] {
+        let out = folder.path().join(format!("{asked:?}"));
+        let stop = Arc::new(AtomicBool::new(true));
+        let run = Run::new(Model::open(&file, &[]).unwrap());
+        let run = run.record(ndda_io::OutputFolder::create(&out, false).unwrap(), file.clone()).unwrap();
+        run.sensitivity(asked).stop_when(stop).finish(&mut []).unwrap();
+        let resumed = Run::resume(&out).unwrap().run;
+        assert_eq!(resumed.sensitivity, asked);
+    }
 }
