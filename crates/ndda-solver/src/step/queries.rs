@@ -160,6 +160,11 @@ impl Simulation {
         self.audit.ledger.speed_scale_m_s()
     }
 
+    /// Whether contact has friction.
+    pub fn has_friction(&self) -> bool {
+        self.contact.as_ref().is_some_and(|model| model.has_friction())
+    }
+
     /// Whether errors of steps without contact fall with the square of the step.
     pub fn is_of_second_order(&self) -> bool {
         self.weights.elastic_lag() == 0.0

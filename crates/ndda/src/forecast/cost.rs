@@ -67,7 +67,7 @@ pub struct Guess {
     pub twin_s: Option<f64>,
     /// Time of the twin with half the step, which a run makes if a block hits several times, or always; none where nothing can move [s].
     pub half_step_s: Option<f64>,
-    /// Whether it makes that twin always: without contact, and where it takes about a second.
+    /// Whether it makes that twin always: without contact, and with friction where it takes about a second.
     pub always_halves: bool,
     /// Most memory of this process, which has done all that a run does [B]; none where the system does not report it.
     pub memory_bytes: Option<u64>,
