@@ -168,7 +168,7 @@ fn files_of_somebody_else_are_not_replaced_by_results_of_the_same_name() {
         ("safety.json", vec!["safety", &slope]),
         ("safety.json", vec!["safety", &slope, "--force"]),
         ("certificate.json", vec!["certify", &sliding]),
-        ("tune.json", vec!["tune", &sliding]),
+        ("tune.json", vec!["tune", &sliding, "--error", "0.01"]),
         ("sweep.csv", vec!["study", &sliding, "--vary", "time.end_s=0.01,0.02", "--of", "label"]),
     ] {
         let out = place.path().join(file.replace('.', "_"));

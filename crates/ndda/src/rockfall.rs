@@ -175,7 +175,7 @@ impl Model {
         let terrain = Terrain::new(&rockfall.terrain, folder, (&rockfall.zones, classes.as_ref()))
             .map_err(|message| refuse("rockfall.terrain", message))?;
         let unnamed = classes.as_ref().map_or_else(Vec::new, |classes| classes.without_zone(&rockfall));
-        let bare = classes.and_then(|classes| classes.leave_bare(&terrain));
+        let bare = classes.and_then(|classes| terrain.bare_of(&classes));
         let model = Self { rockfall, terrain, unnamed, bare, loaded };
         model.meets_the_terrain()?;
         let cells = model.reach_cells().map(|n| n as f64);

@@ -6,8 +6,6 @@ use std::path::Path;
 use ndda_io::mesh::terrain_grid::TerrainGrid;
 use ndda_io::scene::{Ground, Rockfall};
 
-use super::terrain::Terrain;
-
 /// Classes on a grid; cells without a class have none.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Classes {
@@ -81,28 +79,6 @@ impl Classes {
             return None;
         }
         *self.rows.get(j as usize)?.get(i as usize)?
-    }
-
-    /// The part of a terrain that has neither a class nor a zone of its own, in words; none where all of it has.
-    pub(super) fn leave_bare(&self, terrain: &Terrain) -> Option<String> {
-        let [nx, ny] = terrain.cells();
-        let (mut bare, mut least, mut most) = (0usize, [f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        for (i, j) in (0..ny).flat_map(|j| (0..nx).map(move |i| (i, j))).filter(|&(i, j)| terrain.has(i, j)) {
-            for (zone, middle) in terrain.zones_at(i, j).into_iter().zip(terrain.middles_m(i, j)) {
-                if zone == 0 && self.at(middle).is_none() {
-                    bare += 1;
-                    least = [0, 1].map(|axis| least[axis].min(middle[axis]));
-                    most = [0, 1].map(|axis| most[axis].max(middle[axis]));
-                }
-            }
-        }
-        let percent = 100.0 * bare as f64 / terrain.triangles() as f64;
-        (bare > 0).then(|| {
-            format!(
-                "class_grid has no class for {percent:.2} % of the terrain, {bare} triangles between ({:.1}, {:.1}) and ({:.1}, {:.1}) m: they have `ground`",
-                least[0], least[1], most[0], most[1]
-            )
-        })
     }
 
     /// Classes that no zone names, and how many cells have them.

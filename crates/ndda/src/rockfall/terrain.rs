@@ -7,6 +7,7 @@ use ndda_io::scene::{Ground, Zone};
 use ndda_mesh::Vec3;
 
 use super::classes::Classes;
+use crate::numbers::counted;
 
 /// Heights that are less far apart are none of ground [m].
 const LEAST_STEP_M: f64 = 1e-3;
@@ -124,6 +125,29 @@ impl Terrain {
     pub(super) fn middles_m(&self, i: usize, j: usize) -> [[f64; 2]; 2] {
         let (i, j) = (i as f64, j as f64);
         [[2.0 / 3.0, 1.0 / 3.0], [1.0 / 3.0, 2.0 / 3.0]].map(|[u, v]| self.map_m([i + u, j + v]))
+    }
+
+    /// The part that has neither a class nor a zone, in words; none where all of it has.
+    pub(super) fn bare_of(&self, classes: &Classes) -> Option<String> {
+        let [nx, ny] = self.cells();
+        let (mut bare, mut least, mut most) = (0usize, [f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        for (i, j) in (0..ny).flat_map(|j| (0..nx).map(move |i| (i, j))).filter(|&(i, j)| self.has(i, j)) {
+            for (zone, middle) in self.zones_at(i, j).into_iter().zip(self.middles_m(i, j)) {
+                if zone == 0 && classes.at(middle).is_none() {
+                    bare += 1;
+                    least = [0, 1].map(|axis| least[axis].min(middle[axis]));
+                    most = [0, 1].map(|axis| most[axis].max(middle[axis]));
+                }
+            }
+        }
+        let percent = 100.0 * bare as f64 / self.triangles() as f64;
+        (bare > 0).then(|| {
+            format!(
+                "class_grid has no class for {percent:.2} % of the terrain, {} between ({:.1}, {:.1}) and ({:.1}, {:.1}) m, where it has `ground`",
+                counted(bare, "triangle", "triangles"),
+                least[0], least[1], most[0], most[1]
+            )
+        })
     }
 
     /// Place on the map [m] of a place in steps of the grid.
@@ -338,8 +362,8 @@ mod tests {
         // Middles at 10 + 4/3 and 10 + 2/3, and at 12 + 4/3 and 12 + 2/3.
         assert_eq!((terrain.zones_at(0, 0), terrain.zones_at(1, 0)), ([1, 2], [0, 0]));
         // One of four triangles is beyond the grid of classes; the other without a zone has a class that none names.
-        let bare = classes.leave_bare(&terrain).unwrap_or_default();
-        assert!(bare.contains("25.00 % of the terrain, 1 triangles between (13.3, 21.3) and"), "{bare}");
+        let bare = terrain.bare_of(&classes).unwrap_or_default();
+        assert!(bare.contains("25.00 % of the terrain, 1 triangle between (13.3, 21.3) and"), "{bare}");
     }
 
     #[test]
