@@ -1297,7 +1297,8 @@ class Domain:
         `.txt`, `.csv`), a GeoTIFF (`.tif`, `.tiff`), or a surface of triangles (`.stl`), sampled at a two-
         hundredth of its longer side; faces as of `Terrain`.
 
-        Cells with a corner without height are left out.
+        Cells with a corner without height are left out. A first line of names (x, east; y, north; z, height,
+        …) says which columns of points are which; without one they are x, y, z.
 
         Parameters
         ----------
@@ -1634,6 +1635,9 @@ class Ground:
     class File(Builder):
         """Heights in a file: an ESRI ASCII grid (`.asc`), points of a regular grid (`.xyz`, `.txt`, `.csv`),
         a GeoTIFF (`.tif`, `.tiff`), or a surface of triangles (`.stl`).
+
+        A first line of names (x, east; y, north; z, height, …) says which columns of points are which;
+        without one they are x, y, z.
 
         Parameters
         ----------
@@ -3206,7 +3210,7 @@ class RockfallDetail(Builder):
 
 @dataclass(kw_only=True)
 class RockfallRest(Builder):
-    """When a boulder has come to rest.
+    """When a boulder that touches the ground has come to rest.
 
     Parameters
     ----------
