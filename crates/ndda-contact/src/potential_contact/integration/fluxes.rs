@@ -2,7 +2,7 @@
 
 use pulp::{Arch, Simd, WithSimd};
 
-use crate::integration::kernel::{Edges, Form, GROUP, RegionGroup, Rims, Row};
+use crate::integration::kernel::{Edges, Form, GROUP, RegionGroup, Row};
 use crate::integration::pair_moments::mean_flux;
 use crate::integration::queue::Batch;
 use crate::integration::region::{count_cuts, element_outside, is_somewhere};
@@ -86,9 +86,18 @@ impl<const CUTS: usize, const EDGES: usize> WithSimd for FluxKernel<'_, CUTS, ED
     fn with_simd<S: Simd>(self, simd: S) {
         let Self { group, fluxes } = self;
         for k in 0..group.len.div_ceil(S::F64_LANES) {
+            let load = |row: &Row| S::as_simd_f64s(row).0[k];
+            let field = |at: &[Row; 3]| Form::through(simd, [load(&at[0]), load(&at[1]), load(&at[2])]);
             let mut doubtful = simd.splat_f64s(0.0);
-            let edges = Rims::<3, CUTS>::of::<S, EDGES>(simd, group, k, &mut doubtful);
-            let mean = mean_of_a(simd, &edges, &Form::of(simd, &group.phi, k));
+            let mut cuts = group.fields.iter().zip(&group.bounds).take(CUTS);
+            let mut edges = match cuts.next() {
+                None => Edges::<S, EDGES>::triangle(simd),
+                Some((cut, bound)) => Edges::of_triangle(simd, &field(cut), load(bound)),
+            };
+            for (cut, bound) in cuts {
+                edges.cut(simd, &field(cut), load(bound), &mut doubtful);
+            }
+            let mean = mean_of_a(simd, &edges, &field(&group.phi));
             S::as_mut_simd_f64s(&mut fluxes.mean).0[k] = mean;
             S::as_mut_simd_f64s(&mut fluxes.doubtful).0[k] = doubtful;
         }

@@ -108,45 +108,27 @@ impl<const CORNERS: usize, const CUTS: usize, const EDGES: usize> WithSimd
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Self { group, moments } = self;
-        for k in 0..group.len.div_ceil(S::F64_LANES) {
-            let load = |row: &Row| S::as_simd_f64s(row).0[k];
-            let mut sums = Sums::zero(simd);
-            let edges = Rims::<CORNERS, CUTS>::of::<S, EDGES>(simd, group, k, &mut sums.doubtful);
-            let phi = Form::of(simd, &group.phi, k);
-            add_fan(simd, &edges, &phi, load(&group.slope), &mut sums);
-            sums.store(moments, &mut |row, v| S::as_mut_simd_f64s(row).0[k] = v);
-        }
-    }
-}
-
-/// Rims of regions with so many corners and cuts; as many as there may be stand for any number.
-pub(super) struct Rims<const CORNERS: usize, const CUTS: usize>;
-
-impl<const CORNERS: usize, const CUTS: usize> Rims<CORNERS, CUTS> {
-    /// The rims of the k-th lanes of a group; what has to be done one by one is marked.
-    #[inline(always)]
-    pub(super) fn of<S: Simd, const EDGES: usize>(
-        simd: S,
-        group: &RegionGroup,
-        k: usize,
-        doubtful: &mut S::f64s,
-    ) -> Edges<S, EDGES> {
         let cuts = if CUTS < MOST_CUTS { CUTS } else { group.cuts };
         let corners = if CORNERS < MOST_CORNERS { CORNERS } else { group.corners };
-        let load = |row: &Row| S::as_simd_f64s(row).0[k];
-        let mut cuts = group.fields.iter().zip(&group.bounds).take(cuts);
-        let mut edges = match (CORNERS, CUTS) {
-            (3, 0) => Edges::<S, EDGES>::triangle(simd),
-            (3, _) => {
-                let (cut, bound) = cuts.next().expect("a group with cuts");
-                Edges::of_triangle(simd, &Form::of(simd, cut, k), load(bound))
+        for k in 0..group.len.div_ceil(S::F64_LANES) {
+            let load = |row: &Row| S::as_simd_f64s(row).0[k];
+            let field = |at: &[Row; 3]| Form::through(simd, [load(&at[0]), load(&at[1]), load(&at[2])]);
+            let mut sums = Sums::zero(simd);
+            let mut cuts = group.fields.iter().zip(&group.bounds).take(cuts);
+            let mut edges = match (CORNERS, CUTS) {
+                (3, 0) => Edges::<S, EDGES>::triangle(simd),
+                (3, _) => {
+                    let (cut, bound) = cuts.next().expect("a group with cuts");
+                    Edges::of_triangle(simd, &field(cut), load(bound))
+                }
+                _ => Edges::outline(simd, &group.outline[..corners], load),
+            };
+            for (cut, bound) in cuts {
+                edges.cut(simd, &field(cut), load(bound), &mut sums.doubtful);
             }
-            _ => Edges::outline(simd, &group.outline[..corners], load),
-        };
-        for (cut, bound) in cuts {
-            edges.cut(simd, &Form::of(simd, cut, k), load(bound), doubtful);
+            add_fan(simd, &edges, &field(&group.phi), load(&group.slope), &mut sums);
+            sums.store(moments, &mut |row, v| S::as_mut_simd_f64s(row).0[k] = v);
         }
-        edges
     }
 }
 
@@ -183,11 +165,10 @@ impl<S: Simd> Sums<S> {
 pub(super) struct Form<S: Simd>([S::f64s; 3]);
 
 impl<S: Simd> Form<S> {
-    /// The form with the values at the corners of the k-th lanes.
+    /// The form with these values at the corners.
     #[inline(always)]
-    pub(super) fn of(simd: S, at: &[Row; 3], k: usize) -> Self {
-        let [at0, at1, at2] = at.each_ref().map(|row| S::as_simd_f64s(row).0[k]);
-        Self([at0, simd.sub_f64s(at1, at0), simd.sub_f64s(at2, at0)])
+    pub(super) fn through(simd: S, at: [S::f64s; 3]) -> Self {
+        Self([at[0], simd.sub_f64s(at[1], at[0]), simd.sub_f64s(at[2], at[0])])
     }
 
     #[inline(always)]
@@ -207,7 +188,7 @@ pub(super) struct Edges<S: Simd, const MOST: usize> {
 impl<S: Simd, const MOST: usize> Edges<S, MOST> {
     /// The whole triangle, counter-clockwise.
     #[inline(always)]
-    fn triangle(simd: S) -> Self {
+    pub(super) fn triangle(simd: S) -> Self {
         let (o, l) = (simd.splat_f64s(0.0), simd.splat_f64s(1.0));
         let (mut x, mut y) = ([[o; 2]; MOST], [[o; 2]; MOST]);
         (x[0], y[0]) = ([o, l], [o, o]);
@@ -218,7 +199,7 @@ impl<S: Simd, const MOST: usize> Edges<S, MOST> {
 
     /// Remainder of the whole triangle after one cut: its corners need no products, and its rim leaves once at most.
     #[inline(always)]
-    fn of_triangle(simd: S, field: &Form<S>, bound: S::f64s) -> Self {
+    pub(super) fn of_triangle(simd: S, field: &Form<S>, bound: S::f64s) -> Self {
         let Form([c0, c1, c2]) = *field;
         let (d0, d1, d2) = (c0, simd.add_f64s(c0, c1), simd.add_f64s(c0, c2));
         let out0 = simd.less_than_f64s(d0, bound);
@@ -262,7 +243,7 @@ impl<S: Simd, const MOST: usize> Edges<S, MOST> {
 
     /// Keeps what is inside: the field is not below the bound.
     #[inline(always)]
-    fn cut(&mut self, simd: S, field: &Form<S>, bound: S::f64s, doubtful: &mut S::f64s) {
+    pub(super) fn cut(&mut self, simd: S, field: &Form<S>, bound: S::f64s, doubtful: &mut S::f64s) {
         let zero = simd.splat_f64s(0.0);
         let outside = |d| simd.less_than_f64s(d, bound);
         let (mut leave, mut back) = ([zero; 2], [zero; 2]);
