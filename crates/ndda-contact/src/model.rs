@@ -321,6 +321,21 @@ pub struct BodyMemory {
     pub dt_s: f64,
 }
 
+impl BodyMemory {
+    /// Motion of a block at the start of a step of `dt_s`, before contact has pushed it.
+    pub fn new(body: &Body, dt_s: f64) -> Self {
+        Self {
+            velocity_m_s: body.velocity_m_s,
+            spin_rad_s: body.spin_rad_s,
+            push_n: Vec3::zeros(),
+            push_torque_n_m: Vec3::zeros(),
+            dashpot_n: Vec3::zeros(),
+            dashpot_torque_n_m: Vec3::zeros(),
+            dt_s,
+        }
+    }
+}
+
 /// Contact history from step to step; part of the state, so it is saved and rolled back with it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ContactHistory {

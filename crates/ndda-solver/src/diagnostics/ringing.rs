@@ -10,7 +10,7 @@
 //! that changes more. Supports and elasticity act by their mean over a step without jumps: Δt |Δ²F|/12, π/2 times that where
 //! the error has its maximum rather than in the mean, and more at the end of a beam than at its mass centre.
 //!
-//! In a collision without friction these errors cancel, not so on supports: the force begins and ends at zero, and what is left is an error of
+//! In a collision without friction these errors cancel, since the force begins and ends at zero, and what is left is an error of
 //! energy, which is judged by itself (`block_diagnostics.rs`). They add up where a force has more than one maximum before the block
 //! is free again, and where friction makes of the history of a force a velocity that stays. While a block vibrates, the error
 //! is at most twice the speed of its vibration, which is all wrong in phase then.
@@ -177,7 +177,7 @@ impl Ringing {
         let is_clamped = drive.is_clamped && !self.has_touched;
         let cancels = self.maxima <= 1 && !self.has_friction && is_over && !is_clamped;
         let most_m_s = if is_clamped && step.elastic_lag > 0.0 {
-            // What is left of vibrations that the scheme damps.
+            // The scheme damps vibrations: the error is at most the speed that is left.
             drive.speed_m_s
         } else if step.is_one_sided && !is_clamped {
             MOST_ONE_SIDED * self.fastest_m_s

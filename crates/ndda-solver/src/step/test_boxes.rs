@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use ndda_contact::{
-    Body, BodyMemory, ContactAudit, ContactError, ContactHistory, ContactInput, ContactModel, ContactOutput,
+    BodyMemory, ContactAudit, ContactError, ContactHistory, ContactInput, ContactModel, ContactOutput,
     ContactReport,
 };
 use ndda_fem::LinearElastic;
@@ -101,7 +101,7 @@ impl ContactModel for BoxSprings {
             report.contact_pairs += 1;
         });
         if self.keeps_motions {
-            history.bodies = input.bodies.iter().map(|body| memory(body, input.dt_s)).collect();
+            history.bodies = input.bodies.iter().map(|body| BodyMemory::new(body, input.dt_s)).collect();
         }
         Ok(report)
     }
@@ -114,17 +114,5 @@ impl ContactModel for BoxSprings {
 
     fn needs_bodies(&self) -> bool {
         self.keeps_motions
-    }
-}
-
-fn memory(body: &Body, dt_s: f64) -> BodyMemory {
-    BodyMemory {
-        velocity_m_s: body.velocity_m_s,
-        spin_rad_s: body.spin_rad_s,
-        push_n: Vec3::zeros(),
-        push_torque_n_m: Vec3::zeros(),
-        dashpot_n: Vec3::zeros(),
-        dashpot_torque_n_m: Vec3::zeros(),
-        dt_s,
     }
 }

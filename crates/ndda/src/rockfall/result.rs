@@ -140,7 +140,7 @@ fn is_accurate(fall: &Fall) -> bool {
     !matches!(fall.end, End::Stopped(_)) && fall.accuracy.is_accurate()
 }
 
-/// What makes falls inaccurate, and what to change.
+/// Reasons why falls are inaccurate, each with its cure.
 fn reasons(model: &Model, falls: &[Fall], worst: &Accuracy) -> Vec<String> {
     let stopped = ends(falls).stopped;
     let count = counted(stopped, "fall was", "falls were");

@@ -1,6 +1,6 @@
 //! Why a fall could not be computed to its end, with a cure that a scene of boulders can follow.
 
-/// What the solver said, without the time of its window and without its own advice: that names fields that such a scene does not have.
+/// The solver's message with advice for rockfalls. Its time is that of a part of the fall, and its own advice names fields that a rockfall scene does not have.
 pub(super) fn with_a_cure(said: &str) -> String {
     let after_time = said.strip_prefix("at t = ").and_then(|rest| rest.split_once(" s: "));
     let said = after_time.map_or(said, |(_, rest)| rest);

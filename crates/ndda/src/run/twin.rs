@@ -109,7 +109,7 @@ impl Sensitivity {
         let hops = hops(simulation);
         let (pushes, halves) = match self {
             Self::Never => (false, false),
-            // Nothing makes small differences grow without bound, but nothing else says whether a step resolves how loads change with places.
+            // Without impacts small differences hardly grow; whether the step resolves loads that depend on positions, only a shorter step shows.
             _ if !simulation.has_contact() => (false, may_want_half_step(simulation)),
             Self::Always => {
                 let any = ids().any(|block| moves(simulation, block));
@@ -212,7 +212,7 @@ pub(crate) fn label_of_twins(
 /// Runs twins of a simulation that has come to its end. None where all stay together, or where somebody asks to end.
 ///
 /// # Errors
-/// What stops a twin, in words.
+/// The message of the error that stops a twin.
 fn part(
     simulation: &mut Simulation,
     again: &Again,

@@ -1,7 +1,5 @@
 //! Forces beside the pushes of contact: those of the last step.
 
-use ndda_mesh::Vec3;
-
 use crate::model::{Body, BodyMemory, ContactHistory, ContactInput};
 use crate::restitution::ContactDamping;
 use crate::restitution::pair::Change;
@@ -40,15 +38,7 @@ impl ContactDamping {
     pub(super) fn remember(&mut self, scene: &DampingScene, history: &mut ContactHistory) {
         let ContactInput { bodies, dt_s, .. } = *scene.input;
         history.bodies.clear();
-        history.bodies.extend(bodies.iter().map(|body| BodyMemory {
-            velocity_m_s: body.velocity_m_s,
-            spin_rad_s: body.spin_rad_s,
-            push_n: Vec3::zeros(),
-            push_torque_n_m: Vec3::zeros(),
-            dashpot_n: Vec3::zeros(),
-            dashpot_torque_n_m: Vec3::zeros(),
-            dt_s,
-        }));
+        history.bodies.extend(bodies.iter().map(|body| BodyMemory::new(body, dt_s)));
         for (t, touch) in scene.integrals.touching().iter().enumerate() {
             let sums = scene.integrals.sums_of(touch);
             let center = scene.center(t as u32);

@@ -39,26 +39,20 @@ impl BlockDiagnostics {
 
     /// Largest of the second largest impacts of all blocks, over a speed; what rounding may have done does not count.
     pub(crate) fn second_impact(&self, speed_m_s: f64, rounding_j: f64) -> Worst {
-        self.worst_speed(speed_m_s, rounding_j, |balance| balance.hops.second_impact_m_s())
+        self.worst_speed(|_| speed_m_s, rounding_j, |balance| balance.hops.second_impact_m_s())
     }
 
     /// Largest speed that rebounds of contact have added to a block, over a speed: from the line of its speed, and from its impulse, which holds on one plane only. What
     /// rounding may have done does not count.
     pub(crate) fn rebound(&self, speed_m_s: f64, rounding_j: f64) -> (Worst, Worst) {
-        let worst = |of: fn(&BlockBalance) -> f64| self.worst_speed(speed_m_s, rounding_j, of);
+        let worst = |of: fn(&BlockBalance) -> f64| self.worst_speed(|_| speed_m_s, rounding_j, of);
         (worst(|balance| balance.rebound.gained_m_s()), worst(|balance| balance.rebound.across_m_s()))
     }
 
     /// Largest error of a velocity for ringing, over a speed or that below which a block is at rest; what rounding may have done does not count.
     pub(crate) fn ringing(&self, speed_m_s: f64, rounding_j: f64) -> Worst {
-        let mut worst = Worst::default();
-        for (block, (balance, scale)) in self.balances.iter().zip(&self.scales).enumerate() {
-            let own_m_s = balance.ringing.error_m_s();
-            if 0.5 * scale.mass_kg * own_m_s * own_m_s > rounding_j {
-                worst.take(own_m_s / speed_m_s.max(self.rest_speed_m_s(BlockId(block as u32))), block);
-            }
-        }
-        worst
+        let over_m_s = |block| speed_m_s.max(self.rest_speed_m_s(block));
+        self.worst_speed(over_m_s, rounding_j, |balance| balance.ringing.error_m_s())
     }
 
     /// Speed below which a block that supports alone hold is at rest: that of vibrations of a hundredth of its strain; zero for others [m/s].
@@ -70,12 +64,17 @@ impl BlockDiagnostics {
     }
 
     /// Largest of a speed [m/s] of each block over another, where its kinetic energy is more than rounding.
-    fn worst_speed(&self, over_m_s: f64, rounding_j: f64, of: impl Fn(&BlockBalance) -> f64) -> Worst {
+    fn worst_speed(
+        &self,
+        over_m_s: impl Fn(BlockId) -> f64,
+        rounding_j: f64,
+        of: impl Fn(&BlockBalance) -> f64,
+    ) -> Worst {
         let mut worst = Worst::default();
         for (block, (balance, scale)) in self.balances.iter().zip(&self.scales).enumerate() {
             let own_m_s = of(balance);
             if 0.5 * scale.mass_kg * own_m_s * own_m_s > rounding_j {
-                worst.take(own_m_s / over_m_s, block);
+                worst.take(own_m_s / over_m_s(BlockId(block as u32)), block);
             }
         }
         worst

@@ -14,10 +14,10 @@ use crate::Model;
 use crate::run::outputs::{self, Outputs};
 use crate::run::stages::Course;
 
-/// Where the twin of a run ends whose largest speed is `scale_m_s`; none where somebody asks to end.
+/// Positions and velocities at the end of a twin; `scale_m_s` is the largest speed of its run. None if the run is asked to end before.
 ///
 /// # Errors
-/// What stops the twin, in words.
+/// The message of the error that stops the twin.
 pub(super) fn ended(
     (loaded, folder): (&LoadedScene, &Path),
     (twin, scale_m_s): (Twin, f64),

@@ -14,7 +14,7 @@ const DEGREES: [&str; 5] = ["lat", "latitude", "lon", "long", "longitude"];
 /// Units after a name that are metres, and others that are known.
 const METRES: [&str; 5] = ["m", "metre", "metres", "meter", "meters"];
 const OTHERS: [&str; 10] = ["ft", "foot", "feet", "us-ft", "ftus", "mm", "cm", "km", "deg", "°"];
-/// What to write where names are not understood.
+/// Advice of the error for names of columns that are not understood.
 const CURE: &str = "name them x, y and z, or east(ing), north(ing) and h, height, elevation or altitude, with other names for other columns; \
                     of exactly three columns without such a name the order is x, y, z";
 
@@ -28,7 +28,7 @@ pub(super) struct Columns {
     are_all_known: bool,
 }
 
-/// What is between columns.
+/// Separator of columns.
 #[derive(Clone, Copy, PartialEq)]
 enum Separator {
     Byte(u8),
