@@ -6,7 +6,7 @@ use crate::scene::code::Code;
 use crate::scene::diagnostic::Diagnostic;
 use crate::scene::locate::{self, Node, current_segments, segments};
 use crate::scene::parameters;
-use crate::scene::suggest::suggest;
+use crate::scene::suggest::{is_with_unit, suggest};
 use crate::scene::units;
 
 /// Keys whose value is a choice: what is inside cannot be written without saying which.
@@ -77,15 +77,15 @@ const MOST_LISTED: usize = 5;
 /// Advice for a path that the scene does not have: its paths that end in the same name.
 fn elsewhere(tree: &Node, text: &str, path: &str, value: &str) -> Option<String> {
     let leaf = *current_segments(path).last()?;
+    let is_it = |key: &str| key == leaf || is_with_unit(key, leaf);
     let mut found = Vec::new();
-    paths_of(tree, text, leaf, "", &mut found);
+    paths_of(tree, text, &is_it, "", &mut found);
     // A name that is no parameter is said to be like one that is.
     let of_parameters = |path: &str| path.starts_with(parameters::FIELD);
     found.retain(|known| segments(known) != segments(path) && (!of_parameters(path) || of_parameters(known)));
     if found.is_empty() && !of_parameters(path) {
-        found.extend(
-            OFTEN.iter().filter(|often| segments(often).last() == Some(&leaf)).map(ToString::to_string),
-        );
+        let often = OFTEN.iter().filter(|often| segments(often).last().is_some_and(|key| is_it(key)));
+        found.extend(often.map(ToString::to_string));
         found.retain(|known| segments(known) != segments(path));
     }
     // A parameter comes first: setting it changes all values that are computed from it.
@@ -112,8 +112,8 @@ fn like_parameters(tree: &Node, text: &str, leaf: &str) -> Option<String> {
     (!like.is_empty()).then(|| format!("did you mean {}?", like.join(", ")))
 }
 
-/// Paths of all fields of a name; items of lists go by their own `name`, or else by number.
-fn paths_of(node: &Node, text: &str, leaf: &str, path: &str, found: &mut Vec<String>) {
+/// Paths of all fields whose name is one of those wanted; items of lists go by their own `name`, or else by number.
+fn paths_of(node: &Node, text: &str, wanted: &dyn Fn(&str) -> bool, path: &str, found: &mut Vec<String>) {
     for (i, child) in node.children.iter().enumerate() {
         let own = match (&child.key, child.child(text, "name").map(|name| &text[name.span.clone()])) {
             (Some(key), _) if path.is_empty() => key.clone(),
@@ -121,10 +121,10 @@ fn paths_of(node: &Node, text: &str, leaf: &str, path: &str, found: &mut Vec<Str
             (None, Some(name)) if is_plain(name) => format!("{path}.{}", name.trim_matches('"')),
             (None, _) => format!("{path}[{i}]"),
         };
-        if child.key.as_deref() == Some(leaf) {
+        if child.key.as_deref().is_some_and(wanted) {
             found.push(own.clone());
         }
-        paths_of(child, text, leaf, &own, found);
+        paths_of(child, text, wanted, &own, found);
     }
 }
 
@@ -354,6 +354,7 @@ mod tests {
             ("young_pa=2e10", "did you mean --set materials.rock.young_pa=2e10?"),
             ("end_s=2", "did you mean --set time.end_s=2?"),
             ("step_s=1e-3", "did you mean --set time.step_s=1e-3?"),
+            ("step=1e-3", "did you mean --set time.step_s=1e-3?"),
             ("penalty_pa=1e8", "did you mean --set contact.penalty_pa=1e8?"),
             ("size_m=(1, 2, 3)", "`size_m` is at blocks.a.shape.size_m, blocks.b.shape.size_m"),
             ("materials.rock.young_pa=20 GPa", "write Gigapascal(20), or 2e10"),

@@ -1,5 +1,6 @@
 //! Text to types: grammar, units, expressions and types, with every message at its place.
 
+mod choices;
 mod types;
 mod words;
 

@@ -24,8 +24,12 @@ pub fn suggest(found: &str, expected: &[&str]) -> String {
 
 /// An expected name that continues another one by a unit, as `step_s` continues `step`.
 fn with_unit<'a>(name: &str, expected: &[&'a str]) -> Option<&'a str> {
-    let is_longer = |other: &&&str| other.strip_prefix(name).is_some_and(|rest| rest.starts_with('_'));
-    expected.iter().find(is_longer).copied()
+    expected.iter().find(|other| is_with_unit(other, name)).copied()
+}
+
+/// Whether a name is another one with a unit, or another word, after it.
+pub fn is_with_unit(name: &str, without: &str) -> bool {
+    name.strip_prefix(without).is_some_and(|rest| rest.starts_with('_'))
 }
 
 /// The name most like `found`, if any is like it.

@@ -274,7 +274,7 @@ impl Watch<'_> {
         let end = loop {
             touches = match simulation.step() {
                 Ok(report) => report.contact.contact_pairs > 0,
-                Err(error) => break Some(End::Stopped(stopped::with_a_cure(&error.to_string()))),
+                Err(error) => break Some(End::Stopped(stopped::why(&error))),
             };
             self.fall.steps += 1;
             let end = self.see(simulation, since_s + simulation.time_s(), touches);

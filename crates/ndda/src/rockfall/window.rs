@@ -235,7 +235,7 @@ pub(super) fn simulation(
         auto_step: Some(AutoStep { safety: SAFETY, energy: laws.energy, most_halvings: 12 }),
         bolts: Vec::new(),
     })
-    .map_err(|error| super::stopped::with_a_cure(&error.to_string()))?;
+    .map_err(|error| super::stopped::why_not_begun(&error))?;
     simulation.go_on_course();
     Ok(simulation)
 }

@@ -26,6 +26,14 @@ impl Node {
         self.children.iter().any(|c| c.key.is_some() && c.key_span.start == offset || c.has_key_at(offset))
     }
 
+    /// The outermost value that begins at a byte.
+    pub(crate) fn beginning_at(&self, offset: usize) -> Option<&Self> {
+        if self.span.start == offset {
+            return Some(self);
+        }
+        self.children.iter().find_map(|child| child.beginning_at(offset))
+    }
+
     /// The word, number or string around or just before a byte.
     pub(crate) fn leaf_around(&self, offset: usize) -> Option<&Self> {
         if self.opening.is_none() {

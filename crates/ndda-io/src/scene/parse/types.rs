@@ -6,7 +6,7 @@ use ron::error::{Error as RonError, SpannedError};
 use ron::extensions::Extensions;
 use serde::de::DeserializeOwned;
 
-use super::{sort, words};
+use super::{choices, sort, words};
 use crate::scene::code::Code;
 use crate::scene::diagnostic::Diagnostic;
 use crate::scene::locate::Node;
@@ -109,7 +109,12 @@ impl<'a> Reader<'a> {
         // A field may be missing only because it was taken out with a mistake of its own, and a stand-in may be of another type.
         let follows = self.taken_out.iter().any(|earlier| whole.contains(&earlier.start))
             || !is_missing && self.doubtful.iter().any(|part| part.contains(&source));
-        let told = words::explain(error, &self.plain, self.text, self.tree);
+        let mut told = words::explain(error, &self.plain, self.text, self.tree);
+        if let Some(choices) = choices::advice::<T>((&self.options, plain), &error.code, &shape, at)
+            && (is_missing || told.help.as_deref() == Some(words::REFERENCE))
+        {
+            told = told.with_help(choices);
+        }
         // A file that ends inside an expression ends before the scene does, too.
         let is_cut_off = told.code == Code::Truncated;
         let follows = follows || is_cut_off && self.plain.errors.iter().any(|e| e.code == Code::Truncated);
@@ -129,7 +134,11 @@ impl<'a> Reader<'a> {
             self.suppose(number);
             return true;
         }
-        let entry = shape.entry_around(whole.start).filter(|_| is_of_types(&error.code));
+        // A number that has a name where it should have none goes with the choice that it is of.
+        let is_named = matches!(error.code, RonError::ExpectedFloat | RonError::ExpectedInteger)
+            && shape.has_key_at(whole.start);
+        let outer = shape.innermost(whole.start).filter(|_| is_named).map(|node| node.span.start);
+        let entry = shape.entry_around(outer.unwrap_or(whole.start)).filter(|_| is_of_types(&error.code));
         let Some(entry) = entry else { return false };
         self.has_all_items &= shape.has_key_at(entry.start);
         self.has_all_names &= is_number(&self.plain.text[entry.clone()]);

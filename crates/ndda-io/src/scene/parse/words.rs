@@ -6,13 +6,14 @@ use crate::scene::code::Code;
 use crate::scene::diagnostic::Diagnostic;
 use crate::scene::locate::{Node, segments};
 use crate::scene::parameters::FIELD;
+use crate::scene::parse::choices::brackets_of_choice;
 use crate::scene::suggest::suggest;
 use crate::scene::units::{self, Resolved};
 
 /// Counts, in words.
 const COUNTS: &str = "counts are whole numbers from 0 to 4294967295";
 /// Where fields and choices are listed.
-const REFERENCE: &str = "docs/reference/scene.md lists the fields and their choices";
+pub(super) const REFERENCE: &str = "docs/reference/scene.md lists the fields and their choices";
 
 /// RON's complaint in the words of a scene, at the place in the source where a person would look.
 pub(super) fn explain(error: &SpannedError, plain: &Resolved, text: &str, tree: &Node) -> Diagnostic {
@@ -166,38 +167,6 @@ fn parameter_at<'a>(error: &RonError, text: &'a str, at: usize, tree: &Node) -> 
     let known = tree.children.iter().find(|child| child.key.as_deref() == Some(FIELD))?;
     let is_known = known.children.iter().any(|child| child.key.as_deref() == Some(&rest[..end]));
     (wants_number && is_known).then_some(&rest[..end])
-}
-
-/// That a choice lacks its brackets, has some where it has no fields, or has values without names; with the remedy.
-fn brackets_of_choice(error: &RonError, text: &str, at: usize) -> Option<(String, String)> {
-    let before = text[..at].trim_end();
-    let inside = before.strip_suffix('(').map(str::trim_end);
-    let opens = text[at..].starts_with('(');
-    let choice = |text: &str| {
-        let word = text.rsplit(|c: char| !c.is_alphanumeric() && c != '_').next().unwrap_or_default();
-        Some(word.to_string()).filter(|word| word.starts_with(|c: char| c.is_uppercase()))
-    };
-    match error {
-        RonError::ExpectedStructLike | RonError::ExpectedNamedStructLike(_) if !opens => {
-            let name = choice(before)?;
-            Some((
-                format!("`{name}` is written with brackets"),
-                format!("write {name}(), or {name}(field: value); docs/reference/scene.md lists its fields"),
-            ))
-        }
-        RonError::ExpectedComma if opens => {
-            let name = choice(before)?;
-            Some((format!("`{name}` has no fields"), format!("write {name} without brackets")))
-        }
-        RonError::ExpectedIdentifier | RonError::InvalidIdentifier(_) | RonError::SuggestRawIdentifier(_) => {
-            let name = choice(inside?)?;
-            Some((
-                format!("the fields of `{name}` are written with their names"),
-                format!("write {name}(field: value); docs/reference/scene.md lists its fields"),
-            ))
-        }
-        _ => None,
-    }
 }
 
 /// That the number around a byte is no count: RON stops at its point, its exponent, or its sign.
