@@ -21,7 +21,7 @@ pub use record::RecordArgs;
 pub use rockfall::RockfallArgs;
 pub use safety::{SafetyArgs, SafetyBy};
 pub use stereonet::StereonetArgs;
-pub use study::{Emit, Spread, StudyArgs, StudyCaseArgs, StudyHow, StudyPart};
+pub use study::{Spread, StudyArgs, StudyCaseArgs, StudyHow, StudyPart};
 pub use trial::{CertifyArgs, TrialHow, TuneArgs};
 
 /// Rock blocks that slide, topple, collide and fall: 3D discontinuous deformation analysis with contact potential.

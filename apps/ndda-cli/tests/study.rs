@@ -123,6 +123,35 @@ fn a_study_runs_lists_failures_and_goes_on_where_it_was() {
     assert!(changed(folder.path(), kept) > before);
 }
 
+/// Whose second run, with half the step, ends elsewhere.
+const GRAIN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/extreme/small_between_large.ron");
+
+#[test]
+fn labels_of_cases_are_those_of_ndda_run_and_second_runs_cost_nothing() {
+    let study = |second_runs: &str| {
+        let study = format!(
+            "(title: \"grain\", scene: {GRAIN:?}, repeats: 2, {second_runs}
+            axes: [Vary(path: \"time.step_s\", values: [5e-6])],
+            reference: Runs(first: {{}}, second: {{\"time.integrator\": GeneralizedAlpha(radius: 0.8)}}, divisor: 1))"
+        );
+        let folder = folder(&study);
+        let done = ndda(folder.path(), &["study", "study.ron", "--json", "--quiet"]);
+        let results: Value = serde_json::from_slice(&done.stdout).expect("results");
+        let run = json(folder.path().join("out/study_study/cases/step_s=5e-6/run/summary.json"));
+        assert_eq!(run["stages_s"].get("sensitivity"), None, "the last of two runs is not repeated");
+        results["cases"][0]["figures"]["label"]["word"].as_str().map(String::from)
+    };
+    assert_eq!(study("second_runs: Never,").as_deref(), Some("accurate"));
+    assert_eq!(study("").as_deref(), Some("inaccurate"));
+    let folder = folder(STUDY);
+    for (asked, word) in [(&[][..], "inaccurate"), (&["--second-runs", "never"], "accurate")] {
+        let sweep = ["study", GRAIN, "--vary", "time.end_s=0.02", "--of", "label", "--quiet", "--out", "s"];
+        let done = ndda(folder.path(), &[&sweep, asked].concat());
+        let row = fs::read_to_string(folder.path().join("s/sweep.csv")).unwrap();
+        assert!(row.contains(&format!(",{word}")) && done.status.success(), "{row}{}", said(&done));
+    }
+}
+
 #[test]
 fn results_are_compared_with_runs_that_agree() {
     let folder = folder(RUNS);
@@ -207,8 +236,10 @@ fn an_array_of_slurm_runs_each_case_by_ranks_and_is_gathered() {
     let is_right = |line: &str| {
         line.starts_with("--ntasks=3 --cpus-per-task=2 --cpu-bind=cores ")
             && line.contains("ndda-mpi run ")
-            && line.contains(" --force --quiet --sensitivity never --threads 2 --set ")
+            && line.contains(" --force --quiet --sensitivity ")
+            && line.contains(" --threads 2 --set ")
     };
+    assert_eq!(log.matches("--sensitivity never").count(), 2, "references have no labels: {log}");
     assert!(log.lines().all(is_right), "{log}");
     let gathered = with_ranks(&["study", "collect", "study.ron"]);
     assert_eq!(gathered.status.code(), Some(0), "{}", said(&gathered));

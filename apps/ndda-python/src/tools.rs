@@ -103,6 +103,9 @@ fn _study(py: Python<'_>, file: PathBuf, out: PathBuf, options: &Bound<'_, PyDic
         correlate: option(options, "correlate")?.unwrap_or_default(),
         fails_when: option(options, "fails_when")?,
         sensitivity: option(options, "sensitivity")?.unwrap_or(false),
+        second_runs: option::<String>(options, "second_runs")?
+            .map(|word| word.parse().map_err(|error| value_error(format!("second_runs: {error}"))))
+            .transpose()?,
         overrides: option(options, "overrides")?.unwrap_or_default(),
         out: Some(out.clone()),
     };
@@ -113,7 +116,7 @@ fn _study(py: Python<'_>, file: PathBuf, out: PathBuf, options: &Bound<'_, PyDic
             let how = How { runner: &runner, stop: watch.stop.clone(), say: watch.tell, jobs, threads };
             return sweep.run(&how).map(|(_, json)| json);
         }
-        let study = Study::open(&file, Some(out), &ask.overrides)?;
+        let study = Study::open(&file, Some(out), &ask.overrides)?.with_second_runs(ask.second_runs);
         study.check_reference()?;
         make_folder(&study.out)?;
         let launch = study.launch(&runner, watch.tell, (jobs, threads));

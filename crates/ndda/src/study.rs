@@ -19,7 +19,7 @@ mod write;
 
 use std::path::{Path, PathBuf};
 
-use ndda_io::study::{LoadedStudy, Reference};
+use ndda_io::study::{LoadedStudy, Reference, SecondRuns};
 use ndda_io::{OutputFolder, WriteError};
 
 use crate::choose;
@@ -62,6 +62,14 @@ impl Study {
         let name = study.file_stem().map_or_else(|| "study".into(), |s| s.to_string_lossy().into_owned());
         let out = out.unwrap_or_else(|| PathBuf::from("out").join(format!("{name}_study")));
         Ok(Self { loaded, name, cases, references, out })
+    }
+
+    /// Repeats accurate runs of cases as is asked for, in place of what the study says.
+    pub fn with_second_runs(mut self, asked: Option<SecondRuns>) -> Self {
+        if let Some(asked) = asked {
+            self.cases.iter_mut().for_each(|case| case.sensitivity = asked.into());
+        }
+        self
     }
 
     /// Whether there is something to compare with, before anything runs.

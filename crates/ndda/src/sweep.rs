@@ -24,7 +24,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use ndda_io::read;
-use ndda_io::study::{Axis, Correlation, LoadedStudy, Sampling, Study};
+use ndda_io::study::{Axis, Correlation, LoadedStudy, Sampling, SecondRuns, Study};
 
 use crate::Model;
 use crate::places;
@@ -56,6 +56,8 @@ pub struct Ask {
     pub fails_when: Option<String>,
     /// Whether to find how much each random axis matters.
     pub sensitivity: bool,
+    /// Whether accurate runs are repeated, where the label is wanted.
+    pub second_runs: Option<SecondRuns>,
     /// Values of the base scene.
     pub overrides: Vec<String>,
     /// The output folder.
@@ -184,6 +186,7 @@ fn apply(study: &mut Study, ask: &Ask) -> Result<(), StudyError> {
     study.samples = ask.samples.unwrap_or(study.samples);
     study.sampling = ask.sampling.unwrap_or(study.sampling);
     study.seed = ask.seed.unwrap_or(study.seed);
+    study.second_runs = ask.second_runs.unwrap_or(study.second_runs);
     study.sensitivity |= ask.sensitivity;
     if ask.fails_when.is_some() {
         study.fails_when.clone_from(&ask.fails_when);

@@ -2,7 +2,10 @@
 
 use std::path::PathBuf;
 
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Subcommand, ValueEnum};
+use ndda::study::emit::Emit;
+use ndda_io::study::SecondRuns;
 
 /// Arguments of `ndda study`.
 #[derive(Debug, Args)]
@@ -30,7 +33,7 @@ pub struct StudyArgs {
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub jobs: u16,
     /// Run nothing: print a job script, or a list of commands, that runs the cases.
-    #[arg(long, value_enum, value_name = "KIND", conflicts_with_all = ["vary", "of", "fails_when"])]
+    #[arg(long, value_parser = kinds_of_scripts(), value_name = "KIND", conflicts_with_all = ["vary", "of", "fails_when"])]
     pub emit: Option<Emit>,
     /// Print the results as JSON.
     #[arg(long)]
@@ -122,6 +125,9 @@ pub struct StudyHow {
     /// Run each case by so many ranks of ndda-mpi with --threads each: by srun in a job of Slurm, else by mpirun.
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
     pub ranks: u16,
+    /// Repeat accurate runs, for their labels, as `ndda run --sensitivity` does: auto, always or never [default: as the study says].
+    #[arg(long, value_name = "WHEN")]
+    pub second_runs: Option<SecondRuns>,
     /// Print nothing but errors and results.
     #[arg(long, short)]
     pub quiet: bool,
@@ -130,13 +136,7 @@ pub struct StudyHow {
     pub overrides: Vec<String>,
 }
 
-/// Scheduler or shell that is to run the cases.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Emit {
-    /// A job array of Slurm.
-    Slurm,
-    /// GNU parallel.
-    Parallel,
-    /// One command per line.
-    List,
+fn kinds_of_scripts() -> impl TypedValueParser<Value = Emit> {
+    let shown = Emit::KINDS.map(|(_, name, help)| PossibleValue::new(name).help(help));
+    PossibleValuesParser::new(shown).try_map(|name| Emit::named(&name).ok_or("no such kind"))
 }

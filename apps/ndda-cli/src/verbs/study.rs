@@ -9,7 +9,7 @@ use ndda::sweep::{self, Ask, How, Sweep};
 use ndda_io::study::Sampling;
 
 use super::processes::{Processes, refuse};
-use crate::args::{Emit, Spread, StudyArgs, StudyCaseArgs, StudyHow, StudyPart};
+use crate::args::{Spread, StudyArgs, StudyCaseArgs, StudyHow, StudyPart};
 use crate::exit;
 use crate::terminal::console::{complain_unless, say};
 use crate::terminal::interrupt;
@@ -29,7 +29,7 @@ pub fn study(args: &StudyArgs) -> u8 {
 }
 
 fn open(study: &Path, how: &StudyHow) -> Result<Study, StudyError> {
-    Study::open(study, how.out.clone(), &how.overrides)
+    Ok(Study::open(study, how.out.clone(), &how.overrides)?.with_second_runs(how.second_runs))
 }
 
 /// Quantities over values and distributions.
@@ -58,6 +58,7 @@ fn ask(args: &StudyArgs) -> Ask {
         correlate: sweep.correlate.clone(),
         fails_when: sweep.fails_when.clone(),
         sensitivity: sweep.sensitivity,
+        second_runs: args.how.second_runs,
         overrides: args.how.overrides.clone(),
         out: args.how.out.clone(),
     }
@@ -72,11 +73,6 @@ fn run_all(study: &Path, args: &StudyArgs) -> Result<u8, StudyError> {
     let opened = open(study, &args.how)?;
     let StudyHow { ranks, threads, quiet, overrides, .. } = &args.how;
     if let Some(kind) = args.emit {
-        let kind = match kind {
-            Emit::Slurm => emit::Emit::Slurm,
-            Emit::Parallel => emit::Emit::Parallel,
-            Emit::List => emit::Emit::List,
-        };
         let (jobs, ranks, threads) = (args.jobs, *ranks, *threads);
         let plan = Plan { study, out: &opened.out, jobs, ranks, threads, overrides };
         say(&emit::script(&plan, &opened.runs(), kind));

@@ -47,6 +47,7 @@ def study(
     seed: int | None = None,
     correlate: Sequence[str] = (),
     sensitivity: bool = False,
+    second_runs: Literal["auto", "always", "never"] | None = None,
     out: PathLike | None = None,
     jobs: int = 1,
     threads: int = 1,
@@ -70,6 +71,8 @@ def study(
         Correlations of random parameters, such as ``"parameters.a,parameters.b=-0.5"``.
     sensitivity : bool
         Whether to find how much each random axis matters.
+    second_runs : {"auto", "always", "never"}, optional
+        Whether accurate runs are repeated for their labels, as `run` does; as the study says, or else "auto".
     out : path, optional
         Folder of tables, pictures and runs; the same call goes on there where it was interrupted. None is kept otherwise.
     jobs, threads : int
@@ -108,6 +111,7 @@ def study(
         "seed": seed,
         "correlate": list(correlate),
         "sensitivity": sensitivity,
+        "second_runs": second_runs,
         "overrides": overrides_of(overrides),
         **_at_a_time(jobs, threads),
     }

@@ -1,21 +1,23 @@
 //! The study file: a scene, what to vary in it, and what to compare the results with.
 
+mod axis;
 mod check;
 mod distribution;
 mod vary;
 
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::str::FromStr;
 
-use ron::value::RawValue;
 use serde::{Deserialize, Serialize};
 
 use crate::scene::code::Code;
 use crate::scene::diagnostic::{Diagnostic, SceneErrors};
-use crate::scene::locate::{self, Node};
+use crate::scene::locate::Node;
 use crate::scene::parse;
 use crate::scene::read::{self, LoadedScene};
 
+pub(crate) use axis::Values;
+pub use axis::{Axis, Choice, as_overrides};
 use check::{default_curves, lost_paths, problems};
 pub use distribution::Distribution;
 
@@ -39,6 +41,10 @@ pub struct Study {
     /// Runs of each case, of which the fastest counts. Default: 5.
     #[serde(default = "five")]
     pub repeats: u32,
+    /// Whether an accurate run is repeated, from a slightly different start or with half the step, as `ndda run` does: its label is then that of
+    /// `ndda run`. The time of the repetition does not count. Default: `Auto`.
+    #[serde(default)]
+    pub second_runs: SecondRuns,
     /// The cost of a run: wall time or processor time. Default: `Wall`.
     #[serde(default)]
     pub clock: Clock,
@@ -71,6 +77,31 @@ pub struct Study {
     pub safety_error: f64,
 }
 
+/// Whether accurate runs are repeated to see whether their result changes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum SecondRuns {
+    /// Where `ndda run` repeats them.
+    #[default]
+    Auto,
+    /// All of them.
+    Always,
+    /// None.
+    Never,
+}
+
+impl FromStr for SecondRuns {
+    type Err = String;
+
+    fn from_str(word: &str) -> Result<Self, String> {
+        match word {
+            "auto" => Ok(Self::Auto),
+            "always" => Ok(Self::Always),
+            "never" => Ok(Self::Never),
+            other => Err(format!("`{other}` is none of auto, always, never")),
+        }
+    }
+}
+
 /// How samples are spread.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Sampling {
@@ -89,52 +120,6 @@ pub struct Correlation {
     pub between: (String, String),
     /// Coefficient of correlation of the normal numbers that the samples come from, between −1 and 1.
     pub coefficient: f64,
-}
-
-/// Values as text, by their paths in the scene.
-pub(crate) type Values = BTreeMap<String, Box<RawValue>>;
-
-/// Something that varies.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub enum Axis {
-    /// One value of the scene.
-    Vary {
-        /// Its path, as in `--set`; the last part of it names the axis.
-        path: String,
-        /// Its values.
-        values: Vec<Box<RawValue>>,
-        /// Name of the axis. Default: the last part of the path.
-        #[serde(default)]
-        name: Option<String>,
-    },
-    /// One value of the scene, drawn from a distribution.
-    Random {
-        /// Its path, as in `--set`; the last part of it names the axis.
-        path: String,
-        /// Its distribution.
-        distribution: Distribution,
-        /// Name of the axis. Default: the last part of the path.
-        #[serde(default)]
-        name: Option<String>,
-    },
-    /// Several values that change together, or one whose choices need labels.
-    Choose {
-        /// Name of the axis.
-        name: String,
-        /// The choices.
-        choices: Vec<Choice>,
-    },
-}
-
-/// One choice of an axis.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Choice {
-    /// Name in tables and pictures.
-    pub label: String,
-    /// Values by path.
-    pub set: Values,
 }
 
 /// Time that counts as the cost of a run.
@@ -195,6 +180,7 @@ impl Study {
             axes: Vec::new(),
             curves: None,
             repeats: 1,
+            second_runs: SecondRuns::default(),
             clock: Clock::Wall,
             reference: Reference::ClosedForm,
             of: Vec::new(),
@@ -213,46 +199,6 @@ impl Study {
         let is_random = |axis: &Axis| matches!(axis, Axis::Random { .. });
         !self.of.is_empty() || self.fails_when.is_some() || self.axes.iter().any(is_random)
     }
-}
-
-impl Axis {
-    /// Name in tables.
-    pub fn name(&self) -> &str {
-        match self {
-            Self::Vary { name: Some(name), .. } | Self::Random { name: Some(name), .. } => name,
-            Self::Vary { path, .. } | Self::Random { path, .. } => {
-                locate::segments(path).last().copied().unwrap_or(path)
-            }
-            Self::Choose { name, .. } => name,
-        }
-    }
-
-    /// Label and overrides of each choice; none of a distribution.
-    pub fn choices(&self) -> Vec<(String, Vec<String>)> {
-        match self {
-            Self::Random { .. } => Vec::new(),
-            Self::Vary { path, values, .. } => {
-                let texts = values.iter().map(|value| value.get_ron().trim());
-                texts.map(|text| (text.to_string(), vec![format!("{path}={text}")])).collect()
-            }
-            Self::Choose { choices, .. } => {
-                choices.iter().map(|choice| (choice.label.clone(), as_overrides(&choice.set))).collect()
-            }
-        }
-    }
-
-    /// Whether it varies the value at a path.
-    pub(crate) fn varies(&self, path: &str) -> bool {
-        match self {
-            Self::Vary { path: own, .. } | Self::Random { path: own, .. } => own == path,
-            Self::Choose { choices, .. } => choices.iter().any(|choice| choice.set.contains_key(path)),
-        }
-    }
-}
-
-/// Values as `--set` takes them; a path comes before those below it.
-pub fn as_overrides(values: &Values) -> Vec<String> {
-    values.iter().map(|(path, value)| format!("{path}={}", value.get_ron().trim())).collect()
 }
 
 /// A study that parsed and passed its checks.

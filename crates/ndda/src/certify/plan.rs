@@ -9,6 +9,7 @@ use super::chaos::DISTURBANCE;
 use super::error::CertifyError;
 use super::quantities::{BLOCK, named, rounding};
 use crate::build;
+use crate::run::Sensitivity;
 use crate::run::recorder::{Extras, columns, held_blocks};
 use crate::study::case::Case;
 
@@ -97,7 +98,7 @@ impl Plan {
         let mut overrides = self.common.clone();
         overrides.push(format!("time.step_s={:e}", self.step_s(level)));
         overrides.extend(more);
-        Case { name, labels: Vec::new(), overrides, repeats: 1 }
+        Case { name, labels: Vec::new(), overrides, repeats: 1, sensitivity: Sensitivity::Never }
     }
 
     /// The run of the level `k`.

@@ -7,6 +7,7 @@
 mod parted;
 mod through_stages;
 
+use std::fmt;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::str::FromStr;
@@ -15,6 +16,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use ndda_io::read::LoadedScene;
+use ndda_io::study::SecondRuns;
 
 use ndda_mesh::geometry::Aabb;
 use ndda_mesh::{BlockId, Vec3};
@@ -40,16 +42,31 @@ pub enum Sensitivity {
     Never,
 }
 
+impl fmt::Display for Sensitivity {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(match self {
+            Self::Auto => "auto",
+            Self::Always => "always",
+            Self::Never => "never",
+        })
+    }
+}
+
+impl From<SecondRuns> for Sensitivity {
+    fn from(asked: SecondRuns) -> Self {
+        match asked {
+            SecondRuns::Auto => Self::Auto,
+            SecondRuns::Always => Self::Always,
+            SecondRuns::Never => Self::Never,
+        }
+    }
+}
+
 impl FromStr for Sensitivity {
     type Err = String;
 
     fn from_str(word: &str) -> Result<Self, String> {
-        match word {
-            "auto" => Ok(Self::Auto),
-            "always" => Ok(Self::Always),
-            "never" => Ok(Self::Never),
-            other => Err(format!("`{other}` is none of auto, always, never")),
-        }
+        word.parse::<SecondRuns>().map(Self::from)
     }
 }
 

@@ -8,6 +8,7 @@ use ndda_io::locate::Node;
 use ndda_io::study::{Axis, LoadedStudy, Reference, as_overrides};
 
 use super::error::StudyError;
+use crate::run::Sensitivity;
 
 /// Names of cases become names of folders.
 pub const LONGEST_NAME: usize = 200;
@@ -25,6 +26,8 @@ pub struct Case {
     pub overrides: Vec<String>,
     /// How often it runs.
     pub repeats: u32,
+    /// Whether its first run, if it is accurate, is run again to see whether the result changes.
+    pub sensitivity: Sensitivity,
 }
 
 /// Axes and choices of a point, and its overrides.
@@ -53,12 +56,13 @@ pub fn grid(loaded: &LoadedStudy) -> Vec<Point> {
 /// # Errors
 /// [`StudyError::Names`] when two cases would have one folder.
 pub fn cases(loaded: &LoadedStudy) -> Result<Vec<Case>, StudyError> {
-    let repeats = loaded.study.repeats;
+    let (repeats, sensitivity) = (loaded.study.repeats, loaded.study.second_runs.into());
     let cases = grid(loaded).into_iter().map(|(labels, overrides)| Case {
         name: name(&labels),
         labels,
         overrides,
         repeats,
+        sensitivity,
     });
     let cases: Vec<Case> = cases.collect();
     for (i, case) in cases.iter().enumerate() {
@@ -96,7 +100,7 @@ pub fn reference_cases(loaded: &LoadedStudy, cases: &[Case]) -> Result<Vec<Case>
         overrides.extend(as_overrides(values));
         overrides.push(format!("time.step_s={:e}", shortest_s / f64::from(*divisor)));
         overrides.push(format!("output.history_rows={}", rows.saturating_mul(REFERENCE_ROWS)));
-        Case { name: name.into(), labels: Vec::new(), overrides, repeats: 1 }
+        Case { name: name.into(), labels: Vec::new(), overrides, repeats: 1, sensitivity: Sensitivity::Never }
     };
     Ok(runs.map(case).to_vec())
 }

@@ -16,6 +16,20 @@ pub enum Emit {
     List,
 }
 
+impl Emit {
+    /// Each with its name and what it prints.
+    pub const KINDS: [(Self, &str, &str); 3] = [
+        (Self::Slurm, "slurm", "A job array of Slurm"),
+        (Self::Parallel, "parallel", "A script for GNU parallel"),
+        (Self::List, "list", "One command per line"),
+    ];
+
+    /// The one of a name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::KINDS.iter().find(|(_, own, _)| *own == name).map(|(kind, ..)| *kind)
+    }
+}
+
 /// How a scheduler is to run the cases.
 pub struct Plan<'a> {
     /// The study file.
@@ -86,14 +100,20 @@ pub fn quoted(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::run::Sensitivity;
 
     fn emitted(emit: Emit) -> String {
         emitted_for(emit, 1)
     }
 
     fn emitted_for(emit: Emit, ranks: u16) -> String {
-        let case =
-            |name: &str| Case { name: name.into(), labels: Vec::new(), overrides: Vec::new(), repeats: 1 };
+        let case = |name: &str| Case {
+            name: name.into(),
+            labels: Vec::new(),
+            overrides: Vec::new(),
+            repeats: 1,
+            sensitivity: Sensitivity::Never,
+        };
         let overrides = ["time.end_s=(1)".into()];
         let (study, out) = (Path::new("it's.ron"), Path::new("out/s"));
         let plan = Plan { study, out, jobs: 3, ranks, threads: 2, overrides: &overrides };

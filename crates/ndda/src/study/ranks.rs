@@ -58,7 +58,8 @@ pub fn command(run: &CaseRun, program: &[OsString], ranks: u16) -> Result<Comman
     }
     let mut command = Command::new(words.first().map_or("ndda".as_ref(), OsString::as_os_str));
     command.args(words.iter().skip(1)).arg("run").arg(run.scene).arg("--out").arg(run.out);
-    command.args(["--force", "--quiet", "--sensitivity", "never", "--threads", &run.threads.to_string()]);
+    let (again, threads) = (run.sensitivity.to_string(), run.threads.to_string());
+    command.args(["--force", "--quiet", "--sensitivity", &again, "--threads", &threads]);
     // Ranks have no such option: each takes what the scene needs.
     if let Some(bytes) = memory::asked().filter(|_| ranks == 1) {
         command.args(["--memory", &bytes.to_string()]);
@@ -78,12 +79,18 @@ pub fn not_started(command: &Command, error: &io::Error) -> StudyError {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::run::Sensitivity;
 
     #[test]
     fn one_rank_is_the_program_itself_and_several_are_started_by_mpirun_outside_a_job() {
         let overrides = ["time.end_s=(1)".to_string()];
-        let run =
-            CaseRun { scene: Path::new("s.ron"), overrides: &overrides, out: Path::new("o"), threads: 3 };
+        let run = CaseRun {
+            scene: Path::new("s.ron"),
+            overrides: &overrides,
+            out: Path::new("o"),
+            threads: 3,
+            sensitivity: Sensitivity::Never,
+        };
         let words = |ranks| {
             let command = command(&run, &["ndda".into()], ranks).expect("a short command");
             let words = std::iter::once(command.get_program()).chain(command.get_args());

@@ -8,6 +8,7 @@ use serde_json::Value;
 
 use super::error::StudyError;
 use crate::machine;
+use crate::run::Sensitivity;
 
 /// File of a record.
 const RECORD: &str = "case.json";
@@ -39,19 +40,31 @@ pub struct Identity {
     pub threads: u16,
     /// Runs.
     pub repeats: u32,
+    /// Whether an accurate run was run again.
+    #[serde(default = "never")]
+    pub sensitivity: Sensitivity,
 }
 
 impl Identity {
     /// The identity of what this program would run now, by so many ranks with so many threads each.
-    pub fn new(scene: String, (ranks, threads): (u16, u16), repeats: u32) -> Self {
+    pub fn new(
+        scene: String,
+        (ranks, threads): (u16, u16),
+        (repeats, sensitivity): (u32, Sensitivity),
+    ) -> Self {
         let program = format!("{} {} [{}]", env!("CARGO_PKG_VERSION"), machine::COMMIT, machine::FEATURES);
-        Self { scene, program, ranks, threads, repeats }
+        Self { scene, program, ranks, threads, repeats, sensitivity }
     }
 }
 
 /// Ranks of a record that was written before there were any.
 fn alone() -> u16 {
     1
+}
+
+/// What a record that does not say so was run with.
+fn never() -> Sensitivity {
+    Sensitivity::Never
 }
 
 /// Why a run did not reach its end.

@@ -23,6 +23,8 @@ pub struct CaseRun<'a> {
     pub out: &'a Path,
     /// Threads.
     pub threads: u16,
+    /// Whether it is run again, if it is accurate.
+    pub sensitivity: Sensitivity,
 }
 
 /// Bytes of values that a command line holds: Windows allows 32 kB for all of it, Linux 128 kB for one word.
@@ -73,7 +75,7 @@ impl InProcess {
         };
         let folder = OutputFolder::create(run.out, true)?;
         let recorded = Run::new(model)
-            .sensitivity(Sensitivity::Never)
+            .sensitivity(run.sensitivity)
             .stop_when(self.stop.clone())
             .record(folder, run.scene.to_path_buf())?;
         let summary = match recorded.finish(&mut []) {
@@ -111,7 +113,13 @@ mod tests {
         let monitor = |i: usize| format!("(name: \"block {i:05}\", block: \"{i:05}\", at: Centre), ");
         let monitors = format!("monitors=[{}]", (0..20_000).map(monitor).collect::<String>());
         let overrides = ["time.step_s=1", "a=(1,\n2)", "time.step_s=2", &monitors].map(String::from);
-        let run = |overrides| CaseRun { scene: Path::new("s.ron"), overrides, out: &out, threads: 1 };
+        let run = |overrides| CaseRun {
+            scene: Path::new("s.ron"),
+            overrides,
+            out: &out,
+            threads: 1,
+            sensitivity: Sensitivity::Never,
+        };
         assert_eq!(run(&overrides[..3]).set_words().unwrap(), overrides[..3]);
         assert!(std::fs::read_dir(folder.path()).unwrap().next().is_none());
         let words = run(&overrides).set_words().unwrap();

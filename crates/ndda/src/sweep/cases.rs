@@ -37,6 +37,7 @@ pub struct SweepCase {
 /// [`StudyError::Names`] when two points of the grid have one name, [`StudyError::Samples`] where they cannot be drawn.
 pub fn cases(loaded: &LoadedStudy, overrides: &[String]) -> Result<Vec<SweepCase>, StudyError> {
     let samples = samples(loaded)?;
+    let sensitivity = loaded.study.second_runs.into();
     let mut all = Vec::new();
     for (point, (labels, own)) in grid(loaded).iter().enumerate() {
         let of_point = name(labels);
@@ -49,7 +50,7 @@ pub fn cases(loaded: &LoadedStudy, overrides: &[String]) -> Result<Vec<SweepCase
                 labels.push((axis.name().to_string(), format!("{value:e}")));
                 own.push(format!("{path}={value:e}"));
             }
-            let case = Case { name: parts.join("__"), labels, overrides: own, repeats: 1 };
+            let case = Case { name: parts.join("__"), labels, overrides: own, repeats: 1, sensitivity };
             all.push(SweepCase { case, point, role: *role });
         }
     }

@@ -10,6 +10,7 @@ use super::cases::{Role, SweepCase};
 use super::quantity::{self, Values};
 use super::record::{Records, SweepOutcome, SweepRecord};
 use super::{How, Sweep};
+use crate::run::Sensitivity;
 use crate::safety::{self, Bracket, Plan, SafetyError, State, Watch};
 use crate::study::case::{Case, fingerprint};
 use crate::study::error::StudyError;
@@ -95,13 +96,22 @@ impl<'a> Evaluator<'a> {
     fn identity(&self, case: &SweepCase) -> String {
         // A scene that is wrong has a fingerprint, too: its errors.
         let scene = fingerprint(&self.sweep.loaded, &case.case).unwrap_or_else(|errors| errors.render(false));
-        let program = Identity::new(scene, (1, 1), 1);
+        let program = Identity::new(scene, (1, 1), (1, Sensitivity::Never));
         let safety = match self.sweep.wants_safety() {
             true => format!(" safety {:e} {:?}", self.sweep.loaded.study.safety_error, self.sweep.trial),
             false => String::new(),
         };
-        let run = if self.sweep.wants_runs() { " run" } else { "" };
+        let run = match self.sweep.wants_runs() {
+            true => format!(" run {}", self.sensitivity(case)),
+            false => String::new(),
+        };
         format!("{} {}{run}{safety}", program.scene, program.program)
+    }
+
+    /// Whether an accurate run is run again: for its label, where that is wanted.
+    fn sensitivity(&self, case: &SweepCase) -> Sensitivity {
+        let is_labelled = self.sweep.of.iter().any(|name| name == quantity::LABEL);
+        if is_labelled { case.case.sensitivity } else { Sensitivity::Never }
     }
 
     fn compute(&self, case: &SweepCase) -> Result<SweepOutcome, StudyError> {
@@ -130,6 +140,7 @@ impl<'a> Evaluator<'a> {
             overrides: &case.case.overrides,
             out: &results,
             threads: self.how.threads,
+            sensitivity: self.sensitivity(case),
         };
         let outcome = match self.how.runner.run(&run)? {
             Some((cause, reason)) => SweepOutcome::Failed { cause, reason },
