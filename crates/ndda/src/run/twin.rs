@@ -32,7 +32,7 @@ use parted::{farthest_m, height_m, parted};
 /// Whether twins of the run are run after it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Sensitivity {
-    /// After an accurate run that has no contact, or friction and is short, or in which three or more blocks have moved, or two that end beside each other, or in which one has
+    /// After an accurate run that has no contact, or is short and has friction or a scheme of first order, or in which three or more blocks have moved, or two that end beside each other, or in which one has
     /// hopped several times with friction in between, or hit twice or more.
     #[default]
     Auto,
@@ -103,7 +103,8 @@ pub(crate) fn may_want_twin(simulation: &Simulation) -> bool {
     simulation.has_contact() && free.take(ENOUGH).count() == ENOUGH
 }
 
-/// Whether a run that begins here may make a twin with half the step, by default: always without contact, and with friction if it is short, else if a block hits several times.
+/// Whether a run that begins here may make a twin with half the step, by default: always without contact, with friction or a scheme of first order if it is short, else if a
+/// block hits several times.
 pub(crate) fn may_want_half_step(simulation: &Simulation) -> bool {
     let may_move = |block| match simulation.has_contact() {
         true => moves(simulation, block),
@@ -337,11 +338,12 @@ fn lie_together(simulation: &Simulation, moved: &[BlockId]) -> bool {
     bounds(one).touches(&bounds(other))
 }
 
-/// Whether so many steps of a scene are repeated with half the step whatever its blocks do: without contact, and with friction where that does not take long.
-/// Collisions without friction are judged by their energy.
+/// Whether so many steps of a scene are repeated with half the step whatever its blocks do: without contact, and, where that does not take long, with friction or a
+/// scheme of first order. Other collisions are judged by their energy.
 pub(crate) fn always_halves(simulation: &Simulation, steps: u64) -> bool {
     let is_short = steps.saturating_mul(simulation.blocks().triangles.len() as u64) <= SHORT;
-    (is_short && simulation.has_friction() || !simulation.has_contact()) && may_want_half_step(simulation)
+    let may_err = simulation.has_friction() || !simulation.is_of_second_order();
+    (is_short && may_err || !simulation.has_contact()) && may_want_half_step(simulation)
 }
 
 /// Whether a block has hit several times.
