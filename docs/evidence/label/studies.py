@@ -39,12 +39,11 @@ def row(ndda, study):
     # Once each: times do not matter here.
     text = study.read_text(encoding="utf-8")
     text = re.sub(r"^    repeats: \d+,\n", "", text, flags=re.M).replace("    axes:", "    repeats: 1,\n    axes:", 1)
-    once = study.with_name(f"{study.stem}_once.ron")
-    once.write_text(text, encoding="utf-8")
-    try:
+    text = re.sub(r'scene: "(.*)"', lambda found: f'scene: "{study.parent / found[1]}"', text, count=1)
+    with tempfile.TemporaryDirectory() as folder:
+        once = Path(folder, study.name)
+        once.write_text(text, encoding="utf-8")
         usual, always = (labels(ndda, once, second_runs) for second_runs in ("auto", "always"))
-    finally:
-        once.unlink()
     accurate = [name for name, word in usual.items() if word == "accurate"]
     lost = [name for name in accurate if always[name] != "accurate"]
     found = [study.relative_to(ROOT / "scenes"), len(usual), len(accurate), len(accurate) - len(lost), " ".join(lost)]

@@ -3,6 +3,7 @@
 use super::discs::DiscReport;
 use super::neighbours::neighbours;
 use super::polyhedron::{Face, Polyhedron};
+use super::split::Tolerance;
 use super::surfaces::{Neighbour, Surface};
 
 /// A block thinner than requested, or smaller than a cube of that width.
@@ -92,12 +93,11 @@ impl Blocks {
     }
 
     /// Finds neighbours and slivers of finished blocks and completes the report.
-    pub(super) fn finish(mut self, tolerance_m: f64, sliver_width_m: f64) -> Self {
-        self.neighbours = neighbours(&self.blocks, &self.surfaces, tolerance_m);
+    pub(super) fn finish(&mut self, tolerance: Tolerance, sliver_width_m: f64) {
+        self.neighbours = neighbours(&self.blocks, &self.surfaces, tolerance.least_depth_m);
         self.report.slivers = slivers(&self.blocks, sliver_width_m);
         let volumes: Vec<f64> = self.blocks.iter().map(Polyhedron::volume_m3).collect();
         self.report.volume_m3 = pairwise_sum(&volumes);
-        self
     }
 }
 

@@ -120,7 +120,7 @@ fn face_to_face(
 }
 
 /// Surfaces of the faces that share an edge with a face.
-fn beside(part: &Polyhedron, face: u32) -> impl Iterator<Item = u32> + '_ {
+pub(super) fn beside(part: &Polyhedron, face: u32) -> impl Iterator<Item = u32> + '_ {
     let ring = &part.faces[face as usize].vertices;
     let shares_an_edge =
         |other: &&Face| other.vertices.iter().filter(|vertex| ring.contains(vertex)).count() == 2;

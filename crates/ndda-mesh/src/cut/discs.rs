@@ -66,16 +66,21 @@ pub(super) struct DiscShape {
 }
 
 impl DiscCounts {
-    /// Whether a disc cuts the block of which `part` is what is above its plane, the section being the last face.
-    pub(super) fn decide(&mut self, number: u32, disc: &DiscShape, part: &Polyhedron) -> bool {
-        let Some(section) = part.faces.last() else { return true };
-        let nearest = distance(part, section, &disc.center_m);
-        if nearest >= disc.radius_m {
+    /// Whether a disc cuts in a section, which consists of faces of blocks.
+    pub(super) fn decide(&mut self, number: u32, disc: &DiscShape, section: &[(&Polyhedron, &Face)]) -> bool {
+        let is_beside =
+            |(part, face): &(&Polyhedron, &Face)| distance(part, face, &disc.center_m) >= disc.radius_m;
+        if section.iter().all(is_beside) {
             return false;
         }
-        let section_m2 = part.area_vector(section).norm();
-        let covers_all = part.ring(section).all(|x| (x - disc.center_m).norm() <= disc.radius_m);
-        let covered_m2 = if covers_all { section_m2 } else { covered_m2(part, section, disc) };
+        let (mut section_m2, mut covered_m2, mut covers_all) = (0.0, 0.0, true);
+        for (part, face) in section {
+            let area_m2 = part.area_vector(face).norm();
+            let covers_face = part.ring(face).all(|x| (x - disc.center_m).norm() <= disc.radius_m);
+            section_m2 += area_m2;
+            covered_m2 += if covers_face { area_m2 } else { covered_of_m2(part, face, disc) };
+            covers_all &= covers_face;
+        }
         let cuts = match disc.rule {
             DiscRule::Share(share) => covered_m2 >= share * section_m2,
             DiscRule::Meets => true,
@@ -111,7 +116,7 @@ impl DiscShape {
 
 /// Area that a convex face and a disc in its plane have in common [m²]: the sum over the edges of what the triangle of edge and centre has
 /// in common with the circle.
-fn covered_m2(part: &Polyhedron, face: &Face, disc: &DiscShape) -> f64 {
+fn covered_of_m2(part: &Polyhedron, face: &Face, disc: &DiscShape) -> f64 {
     let normal = part.area_vector(face).normalize();
     let [u, v] = frame(&normal);
     let ring: Vec<[f64; 2]> = part
@@ -177,7 +182,7 @@ mod tests {
         let part = Polyhedron::cuboid(Vec3::new(0.0, 0.0, -1.0), Vec3::new(1.0, 1.0, 0.0));
         let top = part.faces.iter().find(|face| part.area_vector(face).z > 0.5).unwrap();
         let center_m = Vec3::new(center[0], center[1], 0.0);
-        covered_m2(&part, top, &DiscShape { center_m, radius_m, rule: DiscRule::Meets })
+        covered_of_m2(&part, top, &DiscShape { center_m, radius_m, rule: DiscRule::Meets })
     }
 
     #[test]

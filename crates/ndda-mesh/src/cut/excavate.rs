@@ -36,7 +36,7 @@ impl Blocks {
     ) -> usize {
         let tolerance = domain.tolerance();
         let name = index_of(&mut self.names, name);
-        let mut cut = 0;
+        let (mut cut, border) = (0, self.surfaces.len() as u32);
         for part in &space.parts {
             // A joint's number that none of the cut has.
             let joint = u32::MAX - self.surfaces.len() as u32;
@@ -57,18 +57,8 @@ impl Blocks {
             self.blocks = blocks;
         }
         self.report.cuts += cut;
-        let blocks = std::mem::replace(
-            self,
-            Self {
-                blocks: Vec::new(),
-                surfaces: Vec::new(),
-                names: Vec::new(),
-                neighbours: Vec::new(),
-                report: Default::default(),
-            },
-        );
-        *self = blocks.finish(tolerance.least_depth_m, sliver_width_m);
-        cut
+        self.finish(tolerance, sliver_width_m);
+        cut + self.part_around((space, border), tolerance, sliver_width_m)
     }
 }
 

@@ -12,6 +12,7 @@ mod discs;
 mod domain;
 mod error;
 mod excavate;
+mod interfaces;
 mod joints;
 mod merge;
 mod neighbours;

@@ -6,6 +6,7 @@ use super::CutError;
 use super::blocks::{Blocks, CutReport};
 use super::discs::DiscCounts;
 use super::domain::Domain;
+use super::interfaces::part_along_joints;
 use super::joints::{CuttingPlane, Discontinuity};
 use super::polyhedron::Polyhedron;
 use super::random::{Stream, key};
@@ -69,9 +70,15 @@ pub fn cut_blocks(
     }
     let mut report = carving.report;
     report.refused = carving.refused.into_iter().collect();
-    report.discs = carving.discs.report(discontinuities.iter().filter(|joint| joint.is_disc()).count());
-    let blocks = Blocks { blocks: carving.blocks, surfaces, names, neighbours: Vec::new(), report };
-    Ok(blocks.finish(domain.tolerance().least_depth_m, options.sliver_width_m))
+    let mut discs = carving.discs;
+    let (tolerance, sliver_width_m) = (domain.tolerance(), options.sliver_width_m);
+    let mut blocks = Blocks { blocks: carving.blocks, surfaces, names, neighbours: Vec::new(), report };
+    blocks.finish(tolerance, sliver_width_m);
+    if part_along_joints(&mut blocks, &carving.cutting_planes, (options.seed, &mut discs), tolerance) {
+        blocks.finish(tolerance, sliver_width_m);
+    }
+    blocks.report.discs = discs.report(discontinuities.iter().filter(|joint| joint.is_disc()).count());
+    Ok(blocks)
 }
 
 struct Carving {
@@ -132,7 +139,10 @@ impl Carving {
                 Split::Above | Split::Below => {}
                 Split::Refused => *self.refused.entry(surface).or_default() += 1,
                 Split::Both { above, below } => {
-                    if cutting_plane.disc.is_some_and(|disc| !self.discs.decide(k, &disc, &above)) {
+                    // The section is the last face.
+                    let section = above.faces.last().map(|face| (&above, face));
+                    let leaves_whole = |disc| !self.discs.decide(k, &disc, section.as_slice());
+                    if cutting_plane.disc.is_some_and(leaves_whole) {
                         continue;
                     }
                     let draw = || Stream::new(self.seed, &[piece.history, u64::from(k)]).uniform();

@@ -80,8 +80,9 @@ pub fn voronoi_blocks(
         }
     }
     let refused = tessellation.refused;
-    Ok(named(domain, seeds_m, cells, refused)?
-        .finish(domain.tolerance().least_depth_m, options.sliver_width_m))
+    let mut blocks = named(domain, seeds_m, cells, refused)?;
+    blocks.finish(domain.tolerance(), options.sliver_width_m);
+    Ok(blocks)
 }
 
 /// Marks faces of a cell that are still named by the seed behind them.
