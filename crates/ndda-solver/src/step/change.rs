@@ -79,6 +79,7 @@ impl Simulation {
         self.audit.ledger.add_work(0.0, 0.0, new.total_j() - old.total_j(), 0.0);
         self.audit.ledger.add_jump_of_momentum(&old, &new);
         self.note_stretched_springs();
+        self.audit.ledger.blocks().watch_rebounds_anew();
         Ok(())
     }
 

@@ -110,6 +110,7 @@ impl Simulation {
         let moment = after.angular_momentum - before.angular_momentum + offset.cross(&impulse);
         self.audit.ledger.add_whole_impulse(impulse, moment);
         self.audit.ledger.add_work(0.0, 0.0, after.kinetic_j - before.kinetic_j, 0.0);
+        self.audit.ledger.blocks().lose_rebound(block);
         self.note_blow();
         Ok(())
     }

@@ -276,6 +276,7 @@ impl Simulation {
         self.state.step = step + ramp_steps;
         let way = std::mem::replace(&mut self.audit.ledger, before);
         self.audit.ledger.begin_anew_at_contact();
+        self.audit.ledger.blocks().rest_rebounds();
         let kept_j = self.keep_reactions_of_rest()?;
         let (new, books) = self.look()?;
         self.audit.ledger.blocks().rebase(&books);

@@ -125,6 +125,7 @@ impl Simulation {
         self.audit.ledger.add_removed(removed_j);
         self.audit.ledger.add_jump_of_momentum(&old, &new);
         self.note_stretched_springs();
+        self.audit.ledger.blocks().watch_rebounds_anew();
         Ok(())
     }
 

@@ -49,6 +49,21 @@ impl BlockDiagnostics {
         (worst(|balance| balance.rebound.gained_m_s()), worst(|balance| balance.rebound.across_m_s()))
     }
 
+    /// Watches rebounds of all blocks from now on, as friction may have changed.
+    pub(crate) fn watch_rebounds_anew(&mut self) {
+        self.balances.iter_mut().for_each(|balance| balance.rebound.begin_anew());
+    }
+
+    /// Watches rebounds of blocks that have all been brought to rest.
+    pub(crate) fn rest_rebounds(&mut self) {
+        self.balances.iter_mut().for_each(|balance| balance.rebound.begin_at_rest());
+    }
+
+    /// Leaves the rebounds of a block alone to which somebody gives another velocity.
+    pub(crate) fn lose_rebound(&mut self, block: BlockId) {
+        self.balances[block.index()].rebound.lose();
+    }
+
     /// Largest error of a velocity for ringing, over a speed or that below which a block is at rest; what rounding may have done does not count.
     pub(crate) fn ringing(&self, speed_m_s: f64, rounding_j: f64) -> Worst {
         let over_m_s = |block| speed_m_s.max(self.rest_speed_m_s(block));
