@@ -113,7 +113,8 @@ impl PyLaw {
         given.set_item("dt", dt_s)?;
         given.set_item("first", blocks(|facet| facet.owner.0.into()))?;
         given.set_item("second", blocks(|facet| facet.target.0.into()))?;
-        given.set_item("area", numbers(|facet| facet.area_m2))?;
+        // Where blocks touch, the faces of both are facets.
+        given.set_item("area", numbers(|facet| 0.5 * facet.area_m2))?;
         given.set_item("normal", vectors(|facet| facet.normal)?)?;
         given.set_item("normal_force", numbers(|facet| facet.normal_n))?;
         given.set_item("slip", vectors(|facet| facet.slip_m)?)?;

@@ -43,6 +43,29 @@ def test_coulomb_in_python_slides_as_the_closed_form() -> None:
     assert abs(energies["balance_j"]) < 1e-2 * energies["kinetic_j"]
 
 
+def test_areas_and_normal_forces_of_facets_are_those_of_the_contact_so_that_cohesion_holds_as_much() -> None:
+    cube = """(title: "cohesion", time: (step_s: 1e-4, end_s: 0.3), gravity_m_s2: (0, 0, -10), settle: (),
+        materials: [(name: "rock", young_pa: 1e9, poisson: 0, density_kg_m3: 1000)],
+        blocks: [
+            (name: "floor", material: "rock", body: Fixed, shape: Box(size_m: (9, 3, 1), cells: (1, 1, 1)), at_m: (-1, -1, -1)),
+            (name: "slab", material: "rock", body: Rigid, shape: Box(size_m: (1, 1, 0.1), cells: (1, 1, 1)), velocity_m_s: (2, 0, 0)),
+        ],
+        contact: Potential(penalty_pa: 1e8, potential: Smooth()))"""
+    seen = {}
+
+    def cohesion(facets: Facets) -> np.ndarray:
+        seen.update(area=facets.area.sum(), force=facets.normal_force.sum())
+        speed = np.maximum(np.linalg.norm(facets.slip, axis=1), 1e-300)
+        return -100.0 * facets.area[:, None] * facets.slip / speed[:, None]
+
+    simulation = ndda.Simulation(ndda.parse(cube), law=cohesion)
+    simulation.run(until=0.3)
+    assert seen["area"] == pytest.approx(1.0, rel=1e-6)
+    assert seen["force"] == pytest.approx(1000.0, rel=1e-2)
+    # 100 Pa on 1 m² slow 100 kg by 1 m/s².
+    assert simulation.blocks["slab"].velocity.mean(axis=0)[0] == pytest.approx(2.0 - 0.3, rel=1e-3)
+
+
 def test_a_law_keeps_numbers_of_each_facet_in_snapshots() -> None:
     class Counting(Spring):
         state_len = 1

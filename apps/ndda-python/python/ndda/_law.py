@@ -24,7 +24,8 @@ class Facets:
     first, second : array of int, shape (facets,)
         Blocks of each facet and of what it is pressed into.
     area : array, shape (facets,)
-        Area in contact [m²].
+        Area of contact that a facet stands for [m²]: half of what it has in contact, since where blocks touch, the faces of both
+        are facets. `normal_force / area` is the pressure, and stresses times `area` add up to the force between blocks.
     normal : array, shape (facets, 3)
         Outward normal of the facet.
     normal_force : array, shape (facets,)
