@@ -326,7 +326,7 @@ mod tests {
         let faster_m_s = slides_m_s - 10.0 * 2.5 * 0.03;
         let gained_m_s = rebound.gained_m_s();
         assert!(
-            faster_m_s > 0.01 && (gained_m_s / faster_m_s - 1.0).abs() < 0.1,
+            faster_m_s > 5e-3 && (gained_m_s / faster_m_s - 1.0).abs() < 0.1,
             "{gained_m_s} {faster_m_s}"
         );
     }
