@@ -41,6 +41,25 @@ fn a_block_that_does_not_stand_as_drawn_has_no_factor_but_a_bound() {
     );
 }
 
+/// Friction of 1° and 1.5° on 45°, of which 32 times as much still leaves 0.44 and 0.16 of the weight along the plane: damping on the way to rest holds the slab back, which slides all the same.
+#[test]
+fn a_slab_that_slides_with_32_times_its_strength_does_not_stand_as_drawn() {
+    for (friction_deg, cells) in [(1.0, "(2, 2, 1)"), (1.5, "(1, 1, 1)")] {
+        let text = format!(
+            "(title: \"slab\", time: (end_s: 1), gravity_m_s2: (6.936717523440031, 0, -6.9367175234400325),
+              materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: 2600)],
+              blocks: [
+                (name: \"base\", material: \"rock\", body: Fixed, shape: Box(size_m: (6, 2, 0.2), cells: (1, 1, 1)), at_m: (-1.5, -0.5, -0.2)),
+                (name: \"slab\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 0.5), cells: {cells}))],
+              contact: Potential(potential: Smooth(), friction: (friction_deg: {friction_deg})))"
+        );
+        let safety = to_error(&text, 0.01);
+        assert_eq!((safety.factor_of_safety.lower, safety.factor_of_safety.upper), (None, Some(1.0 / 32.0)));
+        let moved = &safety.not_standing[0];
+        assert!(moved.block == "slab" && moved.direction[0] > 0.99, "{moved:?}");
+    }
+}
+
 #[test]
 fn a_block_that_does_not_stand_leaves_the_factor_of_the_others() {
     let safety = found(&beside_a_block_that_hangs(), Question::Strength);

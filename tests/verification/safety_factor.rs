@@ -62,6 +62,30 @@ fn a_cube_on_a_plane_has_the_factor_tan_phi_over_tan_alpha() {
     row("safety", "the same by tilting gravity: upper end [-]", upper, Within(exact, ERROR));
 }
 
+/// Of a plane the ratio of shear to normal force counts, and of a wedge the tangent of its inclination along its line, wherever else planes dip.
+#[test]
+fn gravity_that_tilts_gives_the_factor_by_strength_in_any_direction_that_blocks_can_slide() {
+    let tan = |angle: f64| angle.to_radians().tan();
+    let middle = |safety: &Safety| bracket(safety).0.midpoint(bracket(safety).1);
+    let (sin, cos) = 20f64.to_radians().sin_cos();
+    let gravity = format!("gravity_m_s2: ({:?}, 0, {:?})", 9.81 * sin, -9.81 * cos);
+    let cube = scene("plane_dry").replace("gravity_m_s2: (4.905, 0, -8.495709211125344)", &gravity);
+    let cube = cube.replace("friction_deg: 40", "friction_deg: 35");
+    // 60° off the dip direction, in the level plane and in that of the scene, which differ by its dip.
+    let off = Some([0.5 * cos, 0.75f64.sqrt(), 0.5 * sin]);
+    let tilted = found(&cube, Question::Gravity { towards: off });
+    let exact = tan(35.0) / tan(20.0);
+    assert!((middle(&tilted) / exact - 1.0).abs() < ERROR, "{exact}: {:?}", tilted.factor_of_safety);
+    let told = safety::text(&tilted);
+    assert!(told.contains("ratio of shear to normal force on the plane of 20.0° multiplied"), "{told}");
+    let line = normal(40.0, 130.0).cross(&normal(60.0, 220.0));
+    let line = if line.z > 0.0 { -line } else { line };
+    let tilted = found(&scene("wedge"), Question::Gravity { towards: Some(line.into()) });
+    let (exact, _) = limit_equilibrium([(40.0, 130.0), (60.0, 220.0)], 40.0);
+    assert!((middle(&tilted) / exact - 1.0).abs() < ERROR, "{exact}: {:?}", tilted.factor_of_safety);
+    assert!(safety::text(&tilted).contains("down the line of two planes, which plunges"));
+}
+
 /// It slides by a tenth of a metre, and comes to rest against a block that is fixed: it did not stand.
 #[test]
 fn a_cube_that_comes_to_rest_elsewhere_has_a_factor_below_1() {
@@ -281,6 +305,10 @@ fn what_cannot_fail_is_refused_with_what_to_give() {
     assert!(refused(&text, Question::Load).contains("give `forces`"));
     let level = text.replace("gravity_m_s2: (4.905, 0, -8.495709211125344)", "gravity_m_s2: (0, 0, -9.81)");
     assert!(refused(&level, Question::Gravity { towards: None }).contains("no slope"));
+    for towards in [[0.0, 1.0, 0.0], [-1.0, 0.2, 0.0]] {
+        let told = refused(&text, Question::Gravity { towards: Some(towards) });
+        assert!(told.contains("the steepest way down is (1, 0, 0), which it is across or against"), "{told}");
+    }
     let fixed = text.replace("body: Rigid", "body: Fixed");
     assert!(refused(&fixed, Question::Strength).contains("every block of the scene is fixed"));
 }

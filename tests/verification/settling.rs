@@ -84,6 +84,20 @@ fn a_scene_that_cannot_come_to_rest_names_the_block_that_moves() {
     }
 }
 
+/// Contact between rigid blocks of 2 GPa asks for steps below 1e-3 s: with ten times that it throws the cube off its plane, and nothing but the step helps.
+#[test]
+fn a_scene_whose_steps_are_too_long_for_contact_is_told_so() {
+    let scene =
+        std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/safety/plane_dry.ron")).unwrap();
+    let told = |step_s: &str| {
+        let mut simulation = crate::simulation(&scene.replace("step_s: 1e-4", &format!("step_s: {step_s}")));
+        simulation.settle(&Settle::new(1e-9, 300)).unwrap_err().to_string()
+    };
+    let long = told("1e-2");
+    assert!(long.contains("steps are too long for contact") && long.contains("divide step_s by"), "{long}");
+    assert!(!told("1e-5").contains("too long"), "{}", told("1e-5"));
+}
+
 /// A block that nothing holds is given up when it has fallen by the extent of the scene: n steps of free fall with s = ½ g (n Δt)² just above it.
 #[test]
 fn settling_ends_when_a_block_leaves_the_scene() {

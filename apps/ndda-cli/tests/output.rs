@@ -143,6 +143,36 @@ fn impulses_of_contacts_and_reactions_are_the_changes_of_momentum() {
     }
 }
 
+/// A scene far from the origin is computed about a place of its own, and its tables are about the origin all the same.
+#[test]
+fn the_angular_momentum_of_the_history_is_that_of_the_summary() {
+    let place = tempfile::tempdir().unwrap();
+    let (scene, out) = (place.path().join("turn.ron"), place.path().join("out"));
+    let text = "(title: \"turn\", time: (step_s: 1e-4, end_s: 1e-3),
+        materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: 2600)],
+        blocks: [(name: \"cuboid\", material: \"rock\", body: Rigid, shape: Box(size_m: (4, 3, 1), cells: (1, 1, 1)),
+            at_m: (1000, -2000, 500), velocity_m_s: (0.1, 0.2, 0.3), spin_rad_s: (1, 2, 3))])";
+    fs::write(&scene, text).unwrap();
+    assert!(ndda().arg("run").arg(&scene).arg("--out").arg(&out).arg("--quiet").status().unwrap().success());
+    let summary: Value =
+        serde_json::from_str(&fs::read_to_string(out.join("summary.json")).unwrap()).unwrap();
+    let history = fs::read_to_string(out.join("history.csv")).unwrap();
+    // Of the momentum m v at the mass centre (1002, −1998.5, 500.5), and of the spin in the frame of the cuboid.
+    let mass_kg = 12.0 * 2600.0;
+    let exact = [
+        mass_kg * (-1998.5 * 0.3 - 500.5 * 0.2 + 1.0 * (9.0 + 1.0) / 12.0),
+        mass_kg * (500.5 * 0.1 - 1002.0 * 0.3 + 2.0 * (16.0 + 1.0) / 12.0),
+        mass_kg * (1002.0 * 0.2 + 1998.5 * 0.1 + 3.0 * (16.0 + 9.0) / 12.0),
+    ];
+    for (i, axis) in ["x", "y", "z"].iter().enumerate() {
+        let rows = column(&history, &format!("angular_{axis}_kg_m2_s"));
+        let end = summary["blocks"]["cuboid"]["angular_momentum"][i].as_f64().unwrap();
+        for found in rows.iter().chain([&end]) {
+            assert!((found / exact[i] - 1.0).abs() < 1e-9, "{axis}: {found} instead of {}", exact[i]);
+        }
+    }
+}
+
 #[test]
 fn the_log_says_what_ran_on_what() {
     let place = tempfile::tempdir().unwrap();

@@ -85,7 +85,7 @@ pub enum StepError {
         "the scene has not come to rest in {steps} steps ({}{}){}. Block `{block}` has moved {} \
          towards ({:.2}, {:.2}, {:.2}), and {} at least half as far: {}",
         speed_left(*speed_ratio), no_less(*stalled), let_go(*overloaded_bonds), metres(*gone_m), towards[0], towards[1], towards[2], other_blocks(*others),
-        cure_of_unrest(*stalled, *overloaded_bonds)
+        cure_of_unrest(*stalled, *overloaded_bonds, *divide_step_by)
     )]
     NotSettled {
         /// Steps done.
@@ -104,6 +104,8 @@ pub enum StepError {
         stalled: Option<u64>,
         /// Bonds that carried more than their strength at rest, and were let go.
         overloaded_bonds: usize,
+        /// By how much the step has to be divided, where the stability number of contact was above its limit on the way: such steps make energy.
+        divide_step_by: Option<u32>,
     },
     /// An element is inside out.
     #[error(
@@ -176,8 +178,13 @@ fn let_go(bonds: usize) -> String {
 }
 
 /// What helps a scene to come to rest.
-fn cure_of_unrest(stalled: Option<u64>, overloaded_bonds: usize) -> &'static str {
-    match stalled {
+fn cure_of_unrest(stalled: Option<u64>, overloaded_bonds: usize, divide_step_by: Option<u32>) -> String {
+    if let Some(parts) = divide_step_by {
+        return format!(
+            "steps are too long for contact, which moves blocks by itself: divide step_s by {parts}"
+        );
+    }
+    let cure = match stalled {
         _ if overloaded_bonds > 0 => {
             "support them, give their joints more strength, or leave out settle if they are to slide or fall"
         }
@@ -187,7 +194,8 @@ fn cure_of_unrest(stalled: Option<u64>, overloaded_bonds: usize) -> &'static str
         Some(_) => {
             "hold them, or leave out settle if they are to slide or fall; if they only vibrate, raise settle.tolerance"
         }
-    }
+    };
+    cure.into()
 }
 
 /// A length, without a power of ten where that is not needed.

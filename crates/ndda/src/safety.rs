@@ -17,6 +17,7 @@ mod report;
 mod rest;
 mod search;
 mod slender;
+mod slide;
 mod trial;
 mod watched;
 
@@ -167,8 +168,20 @@ pub enum SafetyError {
         "blocks stand on planes of {slope_deg:.2}°, so that there is no slope to make steeper: use --by strength or --by load, or tilt the scene"
     )]
     NoSlope {
-        /// Angle of the steepest plane [°].
+        /// Angle of the steepest way down [°].
         slope_deg: f64,
+    },
+    /// No block slides that way.
+    #[error(
+        "no block can slide towards ({}): the steepest way down is ({}), which it is across or against. Give --towards a direction less than 90° from that, or leave it out",
+        numbers(towards),
+        numbers(down)
+    )]
+    NoSlopeTowards {
+        /// The direction that was asked for.
+        towards: [f64; 3],
+        /// The steepest way down, of length 1.
+        down: [f64; 3],
     },
     /// Blocks do not feel each other.
     #[error("the scene has no contact between blocks, so nothing can stand: give `contact`")]
@@ -222,6 +235,11 @@ pub enum SafetyError {
     /// The answer cannot be written, or an earlier one not be read.
     #[error(transparent)]
     Write(#[from] WriteError),
+}
+
+/// Three numbers to show, without noise.
+fn numbers(of: &[f64; 3]) -> String {
+    of.map(|number| format!("{}", (1e4 * number).round() / 1e4 + 0.0)).join(", ")
 }
 
 /// Folder of the answer and its trials, and their observer.

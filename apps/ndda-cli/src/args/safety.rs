@@ -20,7 +20,7 @@ pub struct SafetyArgs {
     /// Quantity that is changed until blocks fail.
     #[arg(long, value_enum, default_value_t = SafetyBy::Strength)]
     pub by: SafetyBy,
-    /// With `--by gravity`: direction towards which gravity is tilted, as x,y,z [default: down the steepest plane that blocks stand on].
+    /// With `--by gravity`: direction towards which gravity is tilted, as x,y,z [default: straight down the steepest way that blocks can slide].
     #[arg(long, value_name = "X,Y,Z", value_parser = direction, allow_hyphen_values = true)]
     pub towards: Option<[f64; 3]>,
     /// Largest relative difference between the two factors of the answer: the largest at which blocks stand, the smallest at which they fail.

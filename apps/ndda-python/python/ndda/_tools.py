@@ -215,7 +215,7 @@ def safety(
     by : {"strength", "load", "gravity"}
         Quantity that is changed until blocks fail.
     towards : sequence of 3 floats, optional
-        With ``by="gravity"``, where gravity is tilted to; down the steepest plane that blocks stand on otherwise.
+        With ``by="gravity"``, where gravity is tilted to; straight down the steepest way that blocks can slide otherwise.
     error : float
         Relative width of the bracket.
     out : path, optional

@@ -819,7 +819,9 @@ class Contact:
             of settlements and waves is about that length relative to the block size; rebound hardly depends
             on it. Nor does sliding, except near the limit of friction, where blocks also slip while they sink
             in: a penalty ten times as large shows by how much. Default: chosen from the size of blocks, their
-            loads and speeds so that contact is at most `depth_ratio` deep, and said with its reason.
+            loads and speeds so that contact is at most `depth_ratio` deep, and said with its reason. Under
+            loads that press soft or large blocks deeper than that even where contact is as stiff as half a
+            block, it is as stiff as that, and the reason says how deep blocks then overlap.
         depth_ratio : float, optional
             Depth of contact at rest over the size of small blocks, from which `penalty_pa` is chosen where it
             is left out. Default: 1e-4.

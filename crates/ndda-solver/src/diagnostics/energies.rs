@@ -62,7 +62,8 @@ pub struct Sample {
     pub balance_j: f64,
     /// Linear momentum [kg m/s].
     pub momentum: Vec3,
-    /// Angular momentum about the scene's origin [kg m²/s].
+    /// Angular momentum about the place that nodes are relative to, [`BlockSet::origin_m`](ndda_mesh::BlockSet::origin_m) [kg m²/s]; that about the origin of the scene is
+    /// [`Simulation::angular_momentum_of_scene`](crate::Simulation::angular_momentum_of_scene).
     pub angular_momentum: Vec3,
     /// Σ m |v| [kg m/s].
     pub momentum_scale: f64,

@@ -7,6 +7,7 @@ use ndda_mesh::{BlockId, BlockSet, Vec3};
 
 use crate::bodies::kind::BodyKind;
 use crate::bodies::prototype::Prototype;
+use crate::diagnostics::energies::Sample;
 use crate::diagnostics::invariants::Invariants;
 use crate::step::Simulation;
 use crate::step::state::State;
@@ -15,6 +16,16 @@ impl Simulation {
     /// Where each node was when time began [m].
     pub fn start_position(&self) -> &[Vec3] {
         if self.state.start.is_empty() { &self.problem.blocks.rest_position } else { &self.state.start }
+    }
+
+    /// Whether time began at rest, where blocks had settled.
+    pub fn began_at_rest(&self) -> bool {
+        self.start_position() != self.problem.blocks.rest_position
+    }
+
+    /// Angular momentum of a sample about the origin of the scene's coordinates [kg m²/s].
+    pub fn angular_momentum_of_scene(&self, sample: &Sample) -> Vec3 {
+        sample.angular_momentum + self.problem.blocks.origin_m.cross(&sample.momentum)
     }
 
     /// Topology and rest shape.

@@ -328,7 +328,14 @@ impl Simulation {
             others: moved[1..].iter().filter(|(gone, _)| *gone >= 0.5 * gone_m && *gone > 0.0).count(),
             stalled,
             overloaded_bonds: if *bonds_hold { 0 } else { settled.overloaded_bonds },
+            divide_step_by: self.divides_step_by(),
         }
+    }
+
+    /// By how much the step has to be divided for contact that it has not resolved so far.
+    fn divides_step_by(&self) -> Option<u32> {
+        let times = self.invariants().max_h / self.resolved_h()?;
+        (times > 1.0).then_some(times.ceil() as u32)
     }
 
     /// Kinetic energy of all blocks [J].

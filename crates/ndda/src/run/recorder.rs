@@ -283,7 +283,8 @@ impl Sink for Recorder {
             sample.radiated_j,
             sample.balance_j,
         ]);
-        self.row.extend(sample.momentum.iter().chain(sample.angular_momentum.iter()));
+        let angular = simulation.angular_momentum_of_scene(sample);
+        self.row.extend(sample.momentum.iter().chain(angular.iter()));
         let contact = &view.report.contact;
         self.row.extend([contact.contact_pairs as f64, contact.max_penetration_ratio, view.report.h]);
         self.row.extend(self.extras.stages.then_some(sample.removed_j));

@@ -5,6 +5,7 @@ use ndda_mesh::Vec3;
 use serde::{Deserialize, Serialize};
 
 use super::SafetyError;
+use super::slide::{Slide, tilt_rad};
 
 /// The quantity to be changed, as it is asked.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -16,7 +17,7 @@ pub enum Question {
     Load,
     /// The direction of gravity.
     Gravity {
-        /// Where to; without it, down the steepest plane that blocks stand on.
+        /// Where to; without it, down the steepest plane, or line of two planes, that blocks slide down.
         towards: Option<[f64; 3]>,
     },
 }
@@ -29,13 +30,15 @@ pub enum By {
     Strength,
     /// Forces and tractions are multiplied.
     Load,
-    /// Gravity is turned towards a direction by atan(F tan α) − α, where α is its angle to the normal of the plane that
-    /// blocks stand on: on that plane the ratio of shear to normal force is multiplied by F.
+    /// Gravity is turned towards a direction by so much that on the plane that blocks slide down the ratio of shear to normal force is multiplied by F; on the line of two planes,
+    /// that of the part of the weight that drives blocks down it to the part that presses them on the planes.
     Gravity {
         /// The direction, of any length; its part across gravity counts.
         towards: [f64; 3],
-        /// α [°].
+        /// Dip of the plane, or plunge of the line [°]: the tangent of this is the ratio as drawn.
         slope_deg: f64,
+        /// Normals into blocks of the two planes; one plane is there twice.
+        normals: [[f64; 3]; 2],
     },
 }
 
@@ -187,8 +190,10 @@ pub fn shear_stiffness_pa_m(scene: &mut Scene) -> Option<f64> {
     frictions(scene).iter().filter_map(|friction| friction.shear_penalty_pa_m).reduce(f64::min)
 }
 
-/// Smallest slope that can be made steeper [°].
+/// Smallest angle to a level and to a vertical plane of a slope that can be made steeper [°].
 const LEVEL_DEG: f64 = 0.1;
+/// Cosine of a direction to a way down, up to which it is across it: blocks turn by less as they come to rest.
+const ACROSS: f64 = 1e-3;
 
 impl Question {
     /// Whether the scene has what is to be changed.
@@ -202,40 +207,60 @@ impl Question {
             Self::Load if scene.forces.is_empty() && scene.tractions.is_empty() => Err(SafetyError::NoLoad),
             Self::Load => Ok(()),
             Self::Gravity { towards } => {
-                let towards = towards.unwrap_or([0.0; 3]);
-                let tilts =
-                    towards == [0.0; 3] || across(scene, &towards).norm() > 1e-6 * Vec3::from(towards).norm();
+                let is_across =
+                    |towards: [f64; 3]| across(scene, &towards).norm() > 1e-6 * Vec3::from(towards).norm();
                 let falls = scene.gravity_m_s2 != [0.0; 3];
-                if tilts && falls { Ok(()) } else { Err(SafetyError::NoTilt { towards }) }
+                let refused = SafetyError::NoTilt { towards: towards.unwrap_or_default() };
+                if falls && towards.is_none_or(is_across) { Ok(()) } else { Err(refused) }
             }
         }
     }
 
-    /// The change, where blocks rest on planes of these normals into them.
+    /// The change, where each block rests on planes of some normals into it.
     ///
     /// # Errors
-    /// [`SafetyError::NoSlope`] where gravity is to be tilted and all planes are level.
-    pub fn on(&self, scene: &Scene, normals: &[Vec3]) -> Result<By, SafetyError> {
+    /// Gravity is to be tilted, and all planes are level, or none lets blocks slide that way.
+    pub fn on(&self, scene: &Scene, blocks: &[Vec<Vec3>]) -> Result<By, SafetyError> {
         let Self::Gravity { towards } = self else {
             return Ok(if *self == Self::Load { By::Load } else { By::Strength });
         };
-        let up = -Vec3::from(scene.gravity_m_s2).normalize();
-        let slope = |normal: &Vec3| normal.cross(&up).norm().atan2(normal.dot(&up));
-        let leans = |normal: &&Vec3| match towards {
-            Some(towards) => normal.dot(&across(scene, towards)) > 0.0,
+        let leans = |slide: &&Slide| match towards {
+            Some(towards) => slide.direction.dot(&across(scene, towards).normalize()) > ACROSS,
             None => true,
         };
-        let steepest = normals.iter().filter(|normal| normal.dot(&up) > 0.0).filter(leans);
-        let steepest = steepest.max_by(|a, b| slope(a).total_cmp(&slope(b)));
-        let slope_deg = steepest.map_or(0.0, |normal| slope(normal).to_degrees());
-        match steepest {
-            Some(normal) if slope_deg > LEVEL_DEG => {
-                let down: [f64; 3] = across(scene, &(*normal).into()).into();
-                Ok(By::Gravity { towards: towards.unwrap_or(down), slope_deg })
-            }
-            _ => Err(SafetyError::NoSlope { slope_deg }),
+        let slides = slides(Vec3::from(scene.gravity_m_s2), blocks);
+        let steep = || slides.iter().filter(|slide| is_steep(slide));
+        let steeper = |a: &&Slide, b: &&Slide| a.slope_rad.total_cmp(&b.slope_rad);
+        if let Some(slide) = steep().filter(leans).max_by(steeper) {
+            let towards = towards.unwrap_or(across(scene, &slide.direction.into()).into());
+            let (slope_deg, normals) = (slide.slope_rad.to_degrees(), slide.normals.map(Into::into));
+            return Ok(By::Gravity { towards, slope_deg, normals });
         }
+        Err(match steep().max_by(steeper) {
+            Some(slide) => SafetyError::NoSlopeTowards {
+                towards: towards.unwrap_or_default(),
+                down: slide.direction.into(),
+            },
+            None => SafetyError::NoSlope {
+                slope_deg: slides.iter().map(|slide| slide.slope_rad.to_degrees()).fold(0.0, f64::max),
+            },
+        })
     }
+}
+
+/// Ways in which blocks slide that rest on planes of some normals each; where steps below hold all of them, down each plane by itself.
+fn slides(gravity: Vec3, blocks: &[Vec<Vec3>]) -> Vec<Slide> {
+    let whole: Vec<Slide> = blocks.iter().filter_map(|normals| Slide::down(gravity, normals)).collect();
+    if whole.iter().any(is_steep) {
+        return whole;
+    }
+    let single = blocks.iter().flatten().filter_map(|normal| Slide::down(gravity, &[*normal]));
+    single.collect()
+}
+
+/// Whether a slope can be made steeper.
+fn is_steep(slide: &Slide) -> bool {
+    (LEVEL_DEG..90.0 - LEVEL_DEG).contains(&slide.slope_rad.to_degrees())
 }
 
 impl By {
@@ -253,14 +278,17 @@ impl By {
                 let tractions = scene.tractions.iter_mut();
                 tractions.for_each(|traction| traction.traction_pa.iter_mut().for_each(|t| *t *= factor));
             }
-            Self::Gravity { towards, slope_deg } => {
-                let tilt = (factor * slope_deg.to_radians().tan()).atan() - slope_deg.to_radians();
-                let gravity = Vec3::from(scene.gravity_m_s2);
+            Self::Gravity { towards, normals, .. } => {
+                let (gravity, normals) = (Vec3::from(scene.gravity_m_s2), normals.map(Vec3::from));
+                // A slope is made less steep straight away from the way down: in others it may not become so.
+                let down = Slide::down(gravity, &normals).filter(|_| factor < 1.0);
+                let across = across(scene, &down.map_or(*towards, |slide| slide.direction.into()));
+                let across = across.normalize() * gravity.norm();
+                let tilt = tilt_rad(gravity, across, &normals, factor);
                 // Water stays as it is: a slope that is made steeper in this way has no other water table.
                 for water in &mut scene.water {
                     water.pressure = water.pressure.held(scene.gravity_m_s2);
                 }
-                let across = across(scene, towards).normalize() * gravity.norm();
                 scene.gravity_m_s2 = (gravity * tilt.cos() + across * tilt.sin()).into();
             }
         }

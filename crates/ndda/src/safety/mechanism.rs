@@ -246,12 +246,12 @@ fn touches(simulation: &Simulation) -> Vec<Touch> {
     sides.collect()
 }
 
-/// Normals into free blocks of the faces that they rest on.
-pub fn normals(simulation: &Simulation) -> Vec<Vec3> {
+/// Normals into each free block of the faces of fixed ones that it rests on.
+pub fn normals(simulation: &Simulation) -> Vec<Vec<Vec3>> {
     let blocks = free(simulation).collect::<Vec<_>>();
     let mut touches = touches(simulation);
     touches.retain(|touch| !blocks.contains(&touch.other));
-    blocks.iter().flat_map(|block| normals_among(simulation, &touches, *block)).collect()
+    blocks.iter().map(|block| normals_among(simulation, &touches, *block)).collect()
 }
 
 /// Normals into a block of the faces that others press it at.

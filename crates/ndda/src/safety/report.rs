@@ -16,9 +16,13 @@ pub fn text(safety: &Safety) -> String {
     let by = match safety.by {
         By::Strength => "tan φ, c and σ_t of all joints divided by the factor",
         By::Load => "forces and tractions multiplied by the factor",
-        By::Gravity { .. } => {
-            "ratio of shear to normal force on the slope multiplied by the factor, by tilting gravity"
-        }
+        By::Gravity { slope_deg, normals: [a, b], .. } if a == b => &format!(
+            "ratio of shear to normal force on the plane of {slope_deg:.1}° multiplied by the factor, by tilting gravity"
+        ),
+        By::Gravity { slope_deg, .. } => &format!(
+            "ratio of the weight that drives blocks down the line of two planes, which plunges {slope_deg:.1}°, to the weight that presses on them \
+             multiplied by the factor, by tilting gravity"
+        ),
     };
     let answer = match safety.factor_of_safety {
         Bracket { upper: Some(upper), .. } if !safety.stands_as_drawn() => {

@@ -10,7 +10,7 @@ use ndda_io::scene::Scene;
 use ndda_mesh::Vec3;
 use ndda_solver::{Settle, Settled, Simulation, StepError};
 
-use super::free_blocks::{Moved, free};
+use super::free_blocks::{Moved, free, gone_m};
 use super::kept::Kept;
 use super::trial::Start;
 use super::{SafetyError, Watch, changes};
@@ -130,8 +130,13 @@ fn found(loaded: &LoadedScene, folder: &Path, watch: &Watch) -> Result<(Start, f
             Ok(Rest::Interrupted) => return Err(SafetyError::Interrupted),
             Err(source) if !has_strength => return Err(SafetyError::NotHeld { source }),
             Err(source) => {
-                let moved = Moved::since(&simulation, &begun);
-                if strength == STRONGEST && elsewhere.is_none() && !moved.is_empty() {
+                let mut moved = Moved::since(&simulation, &begun);
+                let is_hopeless = strength == STRONGEST && elsewhere.is_none();
+                // Damping may hold back what slides, so that it has not gone far yet.
+                if is_hopeless && moved.is_empty() && matches!(source, StepError::NotSettled { .. }) {
+                    (simulation, moved) = let_go(loaded, folder, (strength, gravity), watch)?;
+                }
+                if is_hopeless && !moved.is_empty() {
                     let start = Start::new(&mut simulation, gravity, softest);
                     let start = start.map_err(|source| SafetyError::NotSettled { strength, source })?;
                     return Ok((Start { moved, still_moves: true, ..start }, strength));
@@ -147,6 +152,51 @@ fn found(loaded: &LoadedScene, folder: &Path, watch: &Watch) -> Result<(Start, f
 fn most_steps(scene: &Scene) -> u64 {
     let fall_s = 5.0;
     ((fall_s / scene.time.step_s) as u64).max(20_000)
+}
+
+/// Steps between looks at how far blocks that are let go have gone.
+const LOOK: usize = 50;
+/// The way in the first half of a time over all of it, up to which motion accelerates: a quarter from rest, where a block that creeps has gone half of it.
+const ACCELERATES: f64 = 0.35;
+/// Part by which a block may have gone farther than in free fall: its contact vibrates.
+const BEYOND_FALL: f64 = 1.05;
+
+/// The scene from where it is drawn, without damping, with so many times its strength: the blocks that go to another place as weight that nothing holds takes them. None where none does in
+/// the steps in which a scene comes to rest that stands; what creeps, jumps or is thrown apart does not count.
+fn let_go(
+    loaded: &LoadedScene,
+    folder: &Path,
+    (strength, gravity): (f64, Vec3),
+    watch: &Watch,
+) -> Result<(Simulation, Vec<Moved>), SafetyError> {
+    let mut changed = loaded.clone();
+    changes::weaken(&mut changed.scene, 1.0 / strength);
+    let steps = most_steps(&changed.scene);
+    let mut simulation = Model::with(changed, folder, choices())?.simulation;
+    let begun = simulation.state().position.clone();
+    let mut ways_m = vec![0.0];
+    for _ in 0..steps / LOOK as u64 {
+        for _ in 0..LOOK {
+            if watch.stop.load(Ordering::Relaxed) {
+                return Err(SafetyError::Interrupted);
+            }
+            simulation.step().map_err(|source| SafetyError::NotSettled { strength, source })?;
+        }
+        let gone_m = gone_m(&simulation, &begun);
+        ways_m.push(gone_m.iter().map(|(_, gone_m)| *gone_m).fold(0.0, f64::max));
+        let moved = Moved::since(&simulation, &begun);
+        if !moved.is_empty() && slides(&ways_m, gravity, LOOK as f64 * simulation.step_s()) {
+            return Ok((simulation, moved));
+        }
+    }
+    Ok((simulation, Vec::new()))
+}
+
+/// Whether these ways, from one look to the next, are those of blocks that their weight accelerates.
+fn slides(ways_m: &[f64], gravity: Vec3, look_s: f64) -> bool {
+    let (last, all_m) = (ways_m.len() - 1, ways_m[ways_m.len() - 1]);
+    let fall_m = 0.5 * gravity.norm() * (look_s * last as f64).powi(2);
+    all_m <= BEYOND_FALL * fall_m && ways_m[last / 2] <= ACCELERATES * all_m
 }
 
 /// How bringing a scene to rest ended.
@@ -221,6 +271,15 @@ mod tests {
                 ..Settled::default()
             })
         })
+    }
+
+    #[test]
+    fn blocks_slide_that_go_as_their_weight_takes_them_and_not_those_that_creep_or_are_thrown() {
+        let is_slide = |way: &dyn Fn(f64) -> f64| {
+            slides(&(0..=40).map(|k| way(f64::from(k))).collect::<Vec<_>>(), Vec3::z(), 1.0)
+        };
+        assert!(is_slide(&|t| 0.5 * t * t) && is_slide(&|t| 0.01 * t * t));
+        assert!(!is_slide(&|t| 0.01 * t) && !is_slide(&|t| 0.6 * t * t) && !is_slide(&|t| 0.1 * t.sqrt()));
     }
 
     #[test]

@@ -26,7 +26,10 @@ pub(super) const SETTLE: &str = "`settle: ()` (in place of gravity_ramp_s)";
 pub(super) fn creep(simulation: &Simulation) -> [Entry; 2] {
     let worst = simulation.invariants();
     let (place, speed) = (worst.creep_place, worst.creep_speed);
-    let cure = "because vibrating contact makes its shear springs slip: give the contact a restitution below 1, or add `settle: ()` (in a stage, `then: Settle(ramp: Damped)`), or gravity_ramp_s (not together with settle), or remove shear_penalty_pa_m";
+    let cure = format!(
+        "because vibrating contact makes its shear springs slip: {}, or remove shear_penalty_pa_m",
+        against_creep(simulation.damps_contact(), simulation.began_at_rest())
+    );
     let where_it_is = format!(
         "block `{}` crept by {:.2} of its smallest element size, limit {PLACE}, {cure}",
         name(simulation, place),
@@ -42,6 +45,20 @@ pub(super) fn creep(simulation: &Simulation) -> [Entry; 2] {
         warned("creep / element size", place.value, PLACE, where_it_is),
         warned("creep speed / largest speed", speed.value, SPEED, how_fast),
     ]
+}
+
+/// What the scene does not have yet of what keeps contact from vibrating.
+fn against_creep(is_damped: bool, began_at_rest: bool) -> &'static str {
+    match (is_damped, began_at_rest) {
+        (false, false) => {
+            "give the contact a restitution below 1, or add `settle: ()` (in a stage, `then: Settle(ramp: Damped)`), or gravity_ramp_s (not together with settle)"
+        }
+        (false, true) => "give the contact a restitution below 1",
+        (true, false) => {
+            "add `settle: ()` (in a stage, `then: Settle(ramp: Damped)`), or gravity_ramp_s (not together with settle)"
+        }
+        (true, true) => "reduce step_s",
+    }
 }
 
 /// Whether friction feeds the hops of blocks on undamped contacts.
@@ -175,4 +192,19 @@ pub(super) fn within_a_step(simulation: &Simulation) -> [Entry; 3] {
         warned("load change within a step / largest speed", worst.unresolved_speed, SPEED, missed),
         warned("damping error / largest speed", worst.damping_speed, SPEED, damping),
     ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::against_creep;
+
+    #[test]
+    fn what_a_scene_has_already_is_not_advised_against_creep() {
+        for (is_damped, began_at_rest) in [(false, false), (false, true), (true, false), (true, true)] {
+            let told = against_creep(is_damped, began_at_rest);
+            assert!(!told.contains("restitution") || !is_damped, "{told}");
+            assert!(!told.contains("settle") || !began_at_rest, "{told}");
+            assert_eq!(told.contains("step_s"), is_damped && began_at_rest);
+        }
+    }
 }

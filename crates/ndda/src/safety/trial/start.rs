@@ -17,8 +17,8 @@ pub struct Start {
     pub elastic_m: f64,
     /// Gravity or, where there is none, contact forces over the mass that they hold [m/s²].
     pub gravity_m_s2: f64,
-    /// Normals into free blocks of the faces of fixed ones that they rest on.
-    pub normals: Vec<Vec3>,
+    /// Normals into each free block of the faces of fixed ones that it rests on.
+    pub normals: Vec<Vec<Vec3>>,
     /// CRC-32 of the blocks at rest.
     pub blocks_crc32: u32,
     /// Blocks that came to rest elsewhere, even with the largest strength.
