@@ -1,5 +1,7 @@
 //! When runs are repeated, and what is found.
 
+use std::sync::atomic::Ordering;
+
 use super::*;
 use crate::{Model, Run};
 
@@ -191,4 +193,30 @@ fn a_run_that_goes_on_is_repeated_as_it_began() {
         let resumed = Run::resume(&out).unwrap().run;
         assert_eq!(resumed.sensitivity, asked);
     }
+}
+
+#[test]
+fn a_run_that_is_interrupted_while_it_runs_again_is_judged_when_it_goes_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("cube.ron");
+    let text = "(title: \"cube\", time: (step_s: 1e-3, end_s: 0.1), gravity_m_s2: (0, 0, -9.81),
+        materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.2, density_kg_m3: 2600)],
+        blocks: [(name: \"cube\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)))])";
+    std::fs::write(&file, text).unwrap();
+    let (out, stop) = (folder.path().join("out"), Arc::new(AtomicBool::new(false)));
+    let asked = stop.clone();
+    let run = Run::new(Model::open(&file, &[]).unwrap());
+    let run = run.record(ndda_io::OutputFolder::create(&out, false).unwrap(), file.clone()).unwrap();
+    // Told of the repetition, somebody asks the run to end.
+    let run = run.strict(true).stop_when(stop).tell(move |_| asked.store(true, Ordering::Relaxed));
+    let cut = run.finish(&mut []).unwrap().summary;
+    assert_eq!((cut.status, cut.steps), (Status::Interrupted, 100));
+    assert_eq!(cut.label.word, LabelWord::Inaccurate);
+    let words = "with half the step was interrupted: it is not known whether the result changes";
+    assert!(cut.label.reasons[0].contains(words), "{:?}", cut.label.reasons);
+    let done = Run::resume(&out).unwrap().run.finish(&mut []).unwrap().summary;
+    assert_eq!((done.status, done.label.word), (Status::Done, LabelWord::Accurate), "{:?}", done.label);
+    assert_eq!(done.state_crc32, cut.state_crc32);
+    assert!(done.stages_s.0.iter().any(|(stage, _)| stage == SECOND_RUN));
+    assert!(matches!(Run::resume(&out), Err(crate::run::ResumeError::HasEnded(_))));
 }
