@@ -1,6 +1,6 @@
 //! Makes the runs of a certificate, those only that are needed, and puts the certificate together.
 
-use ndda_io::scene::Step;
+use ndda_io::scene::{Step, Turning};
 use ndda_io::table::Table;
 
 use super::certificate::{self, Basis, Certificate, Certified, ClosedForm, Histories, RunRecord, SCHEMA};
@@ -100,6 +100,7 @@ pub fn certify(
         least_mass_kg: if least_mass_kg.is_finite() { least_mass_kg } else { 0.0 },
         of: &wanted.of,
         is_chaotic: chaos.is_some(),
+        is_unseen: plan.turning(first).is_some(),
     };
     let steps = [a.history, b.history, c.history];
     let quantities = certificate::certify(&Histories { steps, meshes, penalties, twin }, &basis);
@@ -118,6 +119,7 @@ pub fn certify(
         unresolved_energy_j,
         remarks,
     };
+    certificate.remarks.extend(plan.turning(first).map(|turning| unseen(&turning, plan.step_s(first + 2))));
     remark(&mut certificate, plan, wanted, &c.summary);
     Ok(certificate)
 }
@@ -216,6 +218,15 @@ fn estimates(wanted: &Wanted) -> String {
         }
     }
     .into()
+}
+
+/// What is said of a table that turns back within the shortest step.
+fn unseen(Turning { path, within_s }: &Turning, step_s: f64) -> String {
+    format!(
+        "{path} turns back within {within_s:.2e} s, less than the shortest step of {step_s:e} s, which sees its mean only: all runs may be wrong alike. Error \
+         bars of displacements are at least the largest speed times that step; those of other quantities are not to be believed. \
+         Steps that follow the table: --set time.step_s={within_s:.0e}"
+    )
 }
 
 /// Says what a person should know before using a certificate.
