@@ -177,6 +177,20 @@ fn a_raft_that_its_steps_do_not_resolve_is_inaccurate_although_nothing_touches_i
 }
 
 #[test]
+fn a_raft_that_its_water_carries_from_the_start_is_accurate() {
+    for at in [0.0, 1e3] {
+        let text = format!(
+            "(title: \"raft\", time: (step_s: 2e-3, end_s: 2), gravity_m_s2: (0, 0, -10),
+            materials: [(name: \"wood\", young_pa: 1e8, poisson: 0.25, density_kg_m3: 500)],
+            blocks: [(name: \"a\", material: \"wood\", body: Rigid, shape: Box(size_m: (1, 1, 1), cells: (2, 2, 4)), at_m: ({at}, 0, 0))],
+            water: [(on: Part(block: \"a\", region: All), pressure: Level(at_m: (0, 0, 0.5)))])"
+        );
+        let summary = Run::new(Model::from_text(&text).unwrap()).finish(&mut []).unwrap().summary;
+        assert_eq!(summary.label.word, LabelWord::Accurate, "at {at}: {:?}", summary.label.reasons);
+    }
+}
+
+#[test]
 fn a_run_that_goes_on_is_repeated_as_it_began() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("cube.ron");
