@@ -229,6 +229,15 @@ fn unseen(Turning { path, within_s }: &Turning, step_s: f64) -> String {
     )
 }
 
+/// What is said of energy that is missing at every step, or comes from nowhere.
+fn unresolved(energy_j: f64, deforms: bool) -> String {
+    let what = match deforms {
+        true => format!("{energy_j:.1e} J of vibration is damped by the scheme at every one of these steps"),
+        false => format!("the energy is off by up to {energy_j:.1e} J at every one of these steps"),
+    };
+    format!("{what}; the error bars of energies, velocities and displacements hold what it may add")
+}
+
 /// Says what a person should know before using a certificate.
 fn remark(certificate: &mut Certificate, plan: &Plan, wanted: &Wanted, summary: &Summary) {
     let is_spread = |q: &&Certified| q.behaviour == Behaviour::Spreads && !vanishes(certificate, q);
@@ -254,11 +263,7 @@ fn remark(certificate: &mut Certificate, plan: &Plan, wanted: &Wanted, summary: 
         ));
     }
     if certificate.unresolved_energy_j > 0.0 {
-        say(format!(
-            "{:.1e} J of vibration is damped by the scheme at every one of these steps; the error bars of energies, velocities \
-             and displacements hold what it may add",
-            certificate.unresolved_energy_j
-        ));
+        say(unresolved(certificate.unresolved_energy_j, plan.deforms));
     }
     let left = not_refined(&plan.scene);
     if wanted.meshes > 0 && !left.is_empty() {
@@ -275,5 +280,20 @@ fn remark(certificate: &mut Certificate, plan: &Plan, wanted: &Wanted, summary: 
             "the run of the shortest step is inaccurate: {}",
             reasons::in_a_line(&summary.label.reasons)
         ));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::unresolved;
+
+    #[test]
+    fn energy_that_is_missing_is_vibration_only_where_blocks_deform() {
+        let [rigid, elastic] = [false, true].map(|deforms| unresolved(2.2e-6, deforms));
+        assert!(rigid.starts_with("the energy is off by up to 2.2e-6 J at every one"), "{rigid}");
+        assert!(
+            elastic.starts_with("2.2e-6 J of vibration is damped by the scheme at every one"),
+            "{elastic}"
+        );
     }
 }
