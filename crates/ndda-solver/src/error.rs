@@ -85,7 +85,7 @@ pub enum StepError {
         "the scene has not come to rest in {steps} steps ({}{}){}. Block `{block}` has moved {} \
          towards ({:.2}, {:.2}, {:.2}), and {} at least half as far: {}",
         speed_left(*speed_ratio), no_less(*stalled), let_go(*overloaded_bonds), metres(*gone_m), towards[0], towards[1], towards[2], other_blocks(*others),
-        cure_of_unrest(*stalled, *overloaded_bonds)
+        cure_of_unrest(*stalled, *overloaded_bonds, *may_chatter)
     )]
     NotSettled {
         /// Steps done.
@@ -104,6 +104,8 @@ pub enum StepError {
         stalled: Option<u64>,
         /// Bonds that carried more than their strength at rest, and were let go.
         overloaded_bonds: usize,
+        /// Whether blocks deform under friction on damped contact, which may keep them vibrating.
+        may_chatter: bool,
     },
     /// An element is inside out.
     #[error(
@@ -176,13 +178,17 @@ fn let_go(bonds: usize) -> String {
 }
 
 /// What helps a scene to come to rest.
-fn cure_of_unrest(stalled: Option<u64>, overloaded_bonds: usize) -> &'static str {
+fn cure_of_unrest(stalled: Option<u64>, overloaded_bonds: usize, may_chatter: bool) -> &'static str {
     match stalled {
         _ if overloaded_bonds > 0 => {
             "support them, give their joints more strength, or leave out settle if they are to slide or fall"
         }
         None => {
             "hold them, leave out settle if they are to slide or fall, or raise settle.most_steps if they are only slow"
+        }
+        Some(_) if may_chatter => {
+            "hold them, or leave out settle if they are to slide or fall; if they only vibrate, as blocks that deform may under friction on damped contact, \
+             write settle: (damping: Local()), a greater contact.restitution, a smaller penalty_pa or a shorter time.step_s"
         }
         Some(_) => {
             "hold them, or leave out settle if they are to slide or fall; if they only vibrate, raise settle.tolerance"
