@@ -47,6 +47,9 @@ fn a_run_starts_gets_on_and_finishes_with_its_summary() {
 
     let (code, found) = events(&["resume", &out], "ndda.run/2");
     assert_eq!((code, names(&found)), (0, vec!["nothing_to_do"]));
+    let (code, found) = events(&["resume", &out, "--sensitivity", "always"], "ndda.run/2");
+    let why = found[0]["message"].as_str().unwrap();
+    assert!(code == 0 && why.contains("repeats no run that has ended: run the scene anew"), "{why}");
     let (code, found) = events(&["run", &scene("free_fall"), "--out", &out], "ndda.run/2");
     assert_eq!((code, names(&found)), (5, vec!["failed"]));
     assert!(found[0]["message"].as_str().unwrap().contains("--force"));

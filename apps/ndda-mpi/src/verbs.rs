@@ -97,7 +97,9 @@ pub fn resume(args: &ResumeArgs, ranks: &Arc<dyn Communicator>) -> Result<u8, Fa
     let Resumed { run, warnings } = match Run::resume_on_ranks(&args.folder, ranks) {
         Ok(resumed) => resumed,
         Err(error @ ResumeError::HasEnded(_)) => {
-            say(ranks, &args.how, &error.to_string());
+            let again = ", and `--sensitivity` repeats no run that has ended: run the scene anew with it";
+            let again = args.how.sensitivity.map_or("", |_| again);
+            say(ranks, &args.how, &format!("{error}{again}"));
             return Ok(crate::DONE);
         }
         Err(ResumeError::Ranks(error)) => return Err(error.into()),

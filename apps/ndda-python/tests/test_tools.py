@@ -84,6 +84,17 @@ def test_a_joint_slides_at_its_friction() -> None:
         ndda.joint.shear(law, normal_stress_pa=-1.0)
 
 
+def test_a_law_that_opens_by_slip_is_sheared_as_a_mapping_and_as_text() -> None:
+    law = {"friction_deg": 30, "shear_penalty_pa_m": 1e10, "dilation": {"psi_deg": 10, "to_slip_m": 0.005}}
+    text = "(friction_deg: 30, shear_penalty_pa_m: 1e10, dilation: (psi_deg: 10, to_slip_m: 0.005))"
+    # Slip beyond the elastic displacement, up to 5 mm of it, opens the joint by tan 10°.
+    for given in (law, text):
+        test = ndda.joint.shear(given)
+        assert test.rows["dilation_m"][-1] == pytest.approx(5e-3 * math.tan(math.radians(10)), rel=1e-6)
+    with pytest.raises(ValueError, match="normal stiffness"):
+        ndda.joint.shear(law, constant_volume=True)
+
+
 def test_a_stereonet_checks_a_slope_and_is_a_picture(tmp_path: pathlib.Path) -> None:
     table = tmp_path / "joints.csv"
     table.write_text("dip_deg,dip_direction_deg,set\n45,150,a\n45,152,a\n80,10,b\n")

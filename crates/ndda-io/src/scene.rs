@@ -40,6 +40,7 @@ pub mod study;
 pub mod suggest;
 mod support;
 mod time;
+mod turning;
 mod units;
 mod water;
 
@@ -70,6 +71,7 @@ pub use shape::{Fill, Grading, Pattern, Shape, Towards};
 pub use stage::{Ramp, Stage, StageLaws, Then};
 pub use support::{By, Hold, MotionRow, Region, Support};
 pub use time::{ContactAt, Integrator, Mass, Settle, SettleDamping, Solver, Step, Time};
+pub use turning::Turning;
 pub use water::{LinearPressure, Pressure, Water, Wet};
 
 /// A complete scene.

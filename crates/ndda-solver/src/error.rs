@@ -85,7 +85,7 @@ pub enum StepError {
         "the scene has not come to rest in {steps} steps ({}{}){}. Block `{block}` has moved {} \
          towards ({:.2}, {:.2}, {:.2}), and {} at least half as far: {}",
         speed_left(*speed_ratio), no_less(*stalled), let_go(*overloaded_bonds), metres(*gone_m), towards[0], towards[1], towards[2], other_blocks(*others),
-        cure_of_unrest(*stalled, *overloaded_bonds, *divide_step_by)
+        cure_of_unrest(*stalled, *overloaded_bonds, *divide_step_by, *may_chatter)
     )]
     NotSettled {
         /// Steps done.
@@ -99,13 +99,15 @@ pub enum StepError {
         /// The direction in which, of length 1.
         towards: [f64; 3],
         /// Number of other blocks that have gone at least half as far.
-        others: usize,
+        others: u32,
         /// Steps in which the speed left has not become less, where that was why it was given up.
         stalled: Option<u64>,
         /// Bonds that carried more than their strength at rest, and were let go.
-        overloaded_bonds: usize,
+        overloaded_bonds: u32,
         /// By how much the step has to be divided, where the stability number of contact was above its limit on the way: such steps make energy.
         divide_step_by: Option<u32>,
+        /// Whether blocks deform under friction on damped contact, which may keep them vibrating.
+        may_chatter: bool,
     },
     /// An element is inside out.
     #[error(
@@ -168,7 +170,7 @@ fn no_less(stalled: Option<u64>) -> String {
 }
 
 /// That it rested as long as all bonds held.
-fn let_go(bonds: usize) -> String {
+fn let_go(bonds: u32) -> String {
     match bonds {
         0 => String::new(),
         _ => format!(
@@ -178,7 +180,12 @@ fn let_go(bonds: usize) -> String {
 }
 
 /// What helps a scene to come to rest.
-fn cure_of_unrest(stalled: Option<u64>, overloaded_bonds: usize, divide_step_by: Option<u32>) -> String {
+fn cure_of_unrest(
+    stalled: Option<u64>,
+    overloaded_bonds: u32,
+    divide_step_by: Option<u32>,
+    may_chatter: bool,
+) -> String {
     if let Some(parts) = divide_step_by {
         return format!(
             "steps are too long for contact, which moves blocks by itself: divide step_s by {parts}"
@@ -190,6 +197,10 @@ fn cure_of_unrest(stalled: Option<u64>, overloaded_bonds: usize, divide_step_by:
         }
         None => {
             "hold them, leave out settle if they are to slide or fall, or raise settle.most_steps if they are only slow"
+        }
+        Some(_) if may_chatter => {
+            "hold them, or leave out settle if they are to slide or fall; if they only vibrate, as blocks that deform may under friction on damped contact, \
+             write settle: (damping: Local()), a greater contact.restitution, a smaller penalty_pa or a shorter time.step_s"
         }
         Some(_) => {
             "hold them, or leave out settle if they are to slide or fall; if they only vibrate, raise settle.tolerance"
@@ -204,7 +215,7 @@ fn metres(length_m: f64) -> String {
 }
 
 /// So many other blocks, in words.
-fn other_blocks(count: usize) -> String {
+fn other_blocks(count: u32) -> String {
     match count {
         0 => "no other block".into(),
         1 => "one other block".into(),

@@ -7,6 +7,7 @@
 pub mod cases;
 pub mod condition;
 pub mod distribution;
+mod ends;
 pub mod evaluate;
 pub mod normal;
 #[cfg(feature = "plots")]
@@ -146,6 +147,9 @@ impl Sweep {
     pub fn run(&self, how: &How) -> Result<(Results, String), StudyError> {
         self.check_names()?;
         make_folder(&self.out)?;
+        if let Some(warning) = ends::differing(self) {
+            (how.say)(&warning);
+        }
         let evaluator = Evaluator::new(self, how);
         let records = evaluator.all()?;
         let results = Results::new(self, records)?;

@@ -34,7 +34,11 @@ fn resume_here(folder: &Path, options: &Options) -> u8 {
 fn refuse(error: &ResumeError, options: &Options) -> u8 {
     match error {
         ResumeError::HasEnded(_) => {
-            let message = error.to_string();
+            let again = options.sensitivity.map_or(
+                "",
+                |_| ", and `--sensitivity` repeats no run that has ended: run the scene anew with it",
+            );
+            let message = format!("{error}{again}");
             if !options.events.are_read() {
                 say(&message);
             }

@@ -33,7 +33,7 @@ _BLANK = """Scene(
         (name: "lower", material: "rock", body: Fixed, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1))),
         (name: "upper", material: "rock", shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), at_m: (0, 0, 1)),
     ],
-    contact: Potential(penalty_pa: 1e9, friction: (friction_deg: 30)),
+    contact: Potential(potential: Smooth(), friction: (friction_deg: 30)),
 )"""
 
 

@@ -230,6 +230,16 @@ impl Ledger {
         self.rounding_j = self.rounding_j.max(energy_j);
     }
 
+    /// What all loads and supports have exchanged by now, however much of it balances [N s].
+    pub(crate) fn load_impulse(&self) -> f64 {
+        self.load_impulse
+    }
+
+    /// Loads that balance round in proportion to their moments about the origin, at most those of all of them as far from it as the farthest node.
+    pub(crate) fn watch_farthest(&mut self, farthest_m: f64) {
+        self.peak_angular = self.peak_angular.max(self.load_impulse * farthest_m);
+    }
+
     /// Keeps the largest of all speeds, and of those that came and went within a step [m/s].
     pub(crate) fn watch_speeds(&mut self, speed_m_s: f64, unresolved_m_s: f64) {
         self.largest_speed_m_s = self.largest_speed_m_s.max(speed_m_s);

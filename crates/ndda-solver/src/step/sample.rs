@@ -26,8 +26,10 @@ impl Simulation {
     pub fn sample(&mut self) -> Result<Sample, StepError> {
         let started = Instant::now();
         let time_s = self.time_s();
-        let rounding_j = self.rounding_j();
+        let farthest_m = self.farthest_m();
+        let rounding_j = self.rounding_j() + self.rounding_of_loads_j(farthest_m);
         self.audit.ledger.watch_rounding(rounding_j);
+        self.audit.ledger.watch_farthest(farthest_m);
         let mut sample = Sample { step: self.state.step, time_s, ..Sample::default() };
         sample.smallest_volume_ratio = (f64::INFINITY, 0);
         let mut vibration = Vibration::default();
@@ -189,6 +191,30 @@ impl Simulation {
         let contact =
             if has_contact { over_blocks(self.problem.blocks.node_starts(), of_nodes) } else { 0.0 };
         0.5 * (elastic.collect::<ExactSum>().value() + contact) * self.state.step as f64
+    }
+
+    /// Blocks that are not fixed.
+    fn moving(&self) -> impl Iterator<Item = BlockId> {
+        self.problem.blocks.ids().filter(|&block| self.shape(block).kind != BodyKind::Fixed)
+    }
+
+    /// Energy that loads which balance may have brought by rounding [J]: what is left of them in a step is some last digits of their sum, or of their moment about the origin,
+    /// and moves or turns the blocks.
+    fn rounding_of_loads_j(&self, farthest_m: f64) -> f64 {
+        /// Last digits of the sum of all loads.
+        const DIGITS: f64 = 4.0 * f64::EPSILON;
+        let mass_kg =
+            self.moving().map(|block| self.shape(block).operator.mass_kg).collect::<ExactSum>().value();
+        let least_m =
+            self.moving().map(|block| self.shape(block).smallest_height_m).fold(f64::INFINITY, f64::min);
+        let impulse = DIGITS * self.audit.ledger.load_impulse() * (farthest_m / least_m).max(1.0);
+        if mass_kg > 0.0 { 0.5 * impulse * impulse / mass_kg } else { 0.0 }
+    }
+
+    /// Distance from the origin of the farthest node of a block that is not fixed [m].
+    fn farthest_m(&self) -> f64 {
+        let nodes = self.moving().flat_map(|block| self.problem.blocks.nodes_of(block));
+        nodes.map(|node| self.state.position[node].norm()).fold(0.0, f64::max)
     }
 
     /// Whether the next steps note what each facet does.

@@ -12,6 +12,7 @@
 
 use std::ops::ControlFlow;
 
+use ndda_contact::ContactModel;
 use ndda_mesh::geometry::Aabb;
 use ndda_mesh::{BlockId, Vec3};
 use ndda_ranks::ExactSum;
@@ -204,11 +205,20 @@ impl Simulation {
 
     /// How the scene is damped on the way.
     fn damping_of(&self, settle: &Settle) -> Damping {
-        let deforms = self.problem.shapes.iter().any(|shape| shape.deforms());
         // Friction on velocities may keep blocks vibrating under damping that does not stop them.
         let chatters = self.contact.as_ref().is_some_and(|model| model.needs_bodies());
-        let is_adaptive = deforms && self.newton.is_none() && !chatters;
+        let is_adaptive = self.deforms() && self.newton.is_none() && !chatters;
         settle.damping.unwrap_or(if is_adaptive { Damping::Adaptive } else { Damping::Kinetic })
+    }
+
+    fn deforms(&self) -> bool {
+        self.problem.shapes.iter().any(|shape| shape.deforms())
+    }
+
+    /// Whether blocks deform under friction on damped contact, which may keep them vibrating between the stops of kinetic damping, at steps that resolve contact, too.
+    fn may_chatter(&self) -> bool {
+        let is_damped = |model: &dyn ContactModel| model.damps() && model.has_friction();
+        self.deforms() && self.contact.as_deref().is_some_and(is_damped)
     }
 
     /// Runs with damping until all blocks are at rest, and loads and prescribed motions have gone through a ramp; gives the last step, or none where
@@ -325,10 +335,11 @@ impl Simulation {
             block: self.blocks().names[block.index()].clone(),
             gone_m,
             towards: towards.into(),
-            others: moved[1..].iter().filter(|(gone, _)| *gone >= 0.5 * gone_m && *gone > 0.0).count(),
+            others: moved[1..].iter().filter(|(gone, _)| *gone >= 0.5 * gone_m && *gone > 0.0).count() as u32,
             stalled,
-            overloaded_bonds: if *bonds_hold { 0 } else { settled.overloaded_bonds },
+            overloaded_bonds: if *bonds_hold { 0 } else { settled.overloaded_bonds as u32 },
             divide_step_by: self.divides_step_by(),
+            may_chatter: self.may_chatter(),
         }
     }
 

@@ -12,7 +12,8 @@ use super::extrapolate::{
 };
 use super::plan::{FINER, STIFFER};
 use super::quantities::{
-    Kind, Quantity, common_rows, last_fifth, quantities, rounding, scales, unresolved_energy_j, values_of,
+    Kind, Quantity, common_rows, last_fifth, quantities, rounding, scales, speed_beside, unresolved_energy_j,
+    values_of,
 };
 use crate::documents::write_json;
 
@@ -154,6 +155,8 @@ pub struct Basis<'a> {
     pub of: &'a [String],
     /// Whether the motion is chaotic.
     pub is_chaotic: bool,
+    /// Whether a table of a load or of a motion turns back within the shortest step.
+    pub is_unseen: bool,
 }
 
 /// Each quantity of the histories with its error bar.
@@ -170,6 +173,9 @@ pub fn certify(histories: &Histories, basis: &Basis) -> Vec<Certified> {
         let mut certified = of_steps(quantity, &runs, basis.order, floor);
         certified.scale = scales[quantity.group];
         certified.forgive();
+        if basis.is_unseen && runs.iter().flatten().any(|value| value.abs() > floor) {
+            certified.distrust(quantity.kind, speed_beside(quantity, &wanted, &scales), basis.step_s);
+        }
         certified.add(unresolved(quantity.kind, lost_j, basis));
         let more = |tables: &[Table], part: fn([&[f64]; 3], usize, f64) -> f64| {
             refined(fine, tables, quantity, floor, part)
@@ -348,7 +354,15 @@ mod tests {
     }
 
     fn basis(is_chaotic: bool) -> Basis<'static> {
-        Basis { order: 2.0, steps: 40, step_s: 0.1, least_mass_kg: 1.0, of: &[], is_chaotic }
+        Basis {
+            order: 2.0,
+            steps: 40,
+            step_s: 0.1,
+            least_mass_kg: 1.0,
+            of: &[],
+            is_chaotic,
+            is_unseen: false,
+        }
     }
 
     fn histories(errors: [f64; 3]) -> Histories {

@@ -25,6 +25,8 @@ const SAFETY_ELSE: f64 = 3.0;
 pub enum Behaviour {
     /// All results are the same to rounding.
     Rounding,
+    /// All results are the same to rounding, but a table turns back within the shortest step, which sees its mean only: they may be wrong alike.
+    Unseen,
     /// Differences fall with the order of the scheme.
     Converges,
     /// Differences fall more slowly than the order of the scheme.
@@ -44,6 +46,7 @@ impl Behaviour {
     pub fn word(self) -> &'static str {
         match self {
             Self::Rounding => "exact to rounding",
+            Self::Unseen => "table not resolved",
             Self::Converges => "converges",
             Self::Slowly => "converges slowly",
             Self::Faster => "converges fast",

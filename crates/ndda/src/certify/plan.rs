@@ -1,6 +1,6 @@
 //! The runs of a certificate: the scene with steps that halve, finer meshes, stiffer contact, and a disturbed twin.
 
-use ndda_io::scene::{At, Body, Contact, ContactAt, Fill, Integrator, Monitor, Scene, Shape};
+use ndda_io::scene::{At, Body, Contact, ContactAt, Fill, Integrator, Monitor, Scene, Shape, Turning};
 use ndda_mesh::BlockId;
 use ndda_solver::BodyKind;
 use ndda_solver::Simulation;
@@ -40,6 +40,8 @@ pub struct Plan {
     columns: Vec<String>,
     /// Largest coordinate of a node [m].
     farthest_m: f64,
+    /// Whether a block deforms, so that it can vibrate.
+    pub deforms: bool,
 }
 
 impl Plan {
@@ -61,7 +63,14 @@ impl Plan {
         let names = monitors.iter().map(|monitor| monitor.name.as_str());
         let columns = columns(names, &held_blocks(simulation), Extras::of(scene));
         let farthest_m = simulation.blocks().rest_position.iter().map(|x| x.amax()).fold(0.0, f64::max);
-        Self { scene: scene.clone(), common, steps, step_s, end_s, columns, farthest_m }
+        let deforms = |block| matches!(simulation.shape(block).kind, BodyKind::Elastic | BodyKind::Affine);
+        let deforms = simulation.blocks().ids().any(deforms);
+        Self { scene: scene.clone(), common, steps, step_s, end_s, columns, farthest_m, deforms }
+    }
+
+    /// A table that turns back within the shortest of three steps, of which `level` is the longest.
+    pub fn turning(&self, level: u32) -> Option<Turning> {
+        self.scene.turns_within(self.step_s(level + 2))
     }
 
     /// Rounding error of a position [m] in the run of the shortest of three steps, of which `level` is the longest.

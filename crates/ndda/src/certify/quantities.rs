@@ -162,6 +162,13 @@ pub fn scales(quantities: &[Quantity], history: &Table) -> Vec<f64> {
     scales
 }
 
+/// The largest speed of the monitor that a quantity belongs to [m/s].
+pub fn speed_beside(quantity: &Quantity, all: &[Quantity], scales: &[f64]) -> f64 {
+    let monitor = |quantity: &Quantity| quantity.name.rsplit_once('.').map(|(monitor, _)| monitor.to_owned());
+    let is_beside = |other: &&Quantity| other.kind == Kind::Velocity && monitor(other) == monitor(quantity);
+    all.iter().find(is_beside).map_or(0.0, |velocity| scales[velocity.group])
+}
+
 /// Differences below this say nothing about values of a size after a number of steps.
 pub fn rounding(scale: f64, steps: u64) -> f64 {
     ROUNDING * f64::EPSILON * steps.max(1) as f64 * scale

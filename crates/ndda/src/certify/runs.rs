@@ -1,6 +1,6 @@
 //! Makes the runs of a certificate, those only that are needed, and puts the certificate together.
 
-use ndda_io::scene::Step;
+use ndda_io::scene::{Step, Turning};
 use ndda_io::table::Table;
 
 use super::certificate::{self, Basis, Certificate, Certified, ClosedForm, Histories, RunRecord, SCHEMA};
@@ -100,6 +100,7 @@ pub fn certify(
         least_mass_kg: if least_mass_kg.is_finite() { least_mass_kg } else { 0.0 },
         of: &wanted.of,
         is_chaotic: chaos.is_some(),
+        is_unseen: plan.turning(first).is_some(),
     };
     let steps = [a.history, b.history, c.history];
     let quantities = certificate::certify(&Histories { steps, meshes, penalties, twin }, &basis);
@@ -118,6 +119,7 @@ pub fn certify(
         unresolved_energy_j,
         remarks,
     };
+    certificate.remarks.extend(plan.turning(first).map(|turning| unseen(&turning, plan.step_s(first + 2))));
     remark(&mut certificate, plan, wanted, &c.summary);
     Ok(certificate)
 }
@@ -218,6 +220,24 @@ fn estimates(wanted: &Wanted) -> String {
     .into()
 }
 
+/// What is said of a table that turns back within the shortest step.
+fn unseen(Turning { path, within_s }: &Turning, step_s: f64) -> String {
+    format!(
+        "{path} turns back within {within_s:.2e} s, less than the shortest step of {step_s:e} s, which sees its mean only: all runs may be wrong alike. Error \
+         bars of displacements are at least the largest speed times that step; those of other quantities are not to be believed. \
+         Steps that follow the table: --set time.step_s={within_s:.0e}"
+    )
+}
+
+/// What is said of energy that is missing at every step, or comes from nowhere.
+fn unresolved(energy_j: f64, deforms: bool) -> String {
+    let what = match deforms {
+        true => format!("{energy_j:.1e} J of vibration is damped by the scheme at every one of these steps"),
+        false => format!("the energy is off by up to {energy_j:.1e} J at every one of these steps"),
+    };
+    format!("{what}; the error bars of energies, velocities and displacements hold what it may add")
+}
+
 /// Says what a person should know before using a certificate.
 fn remark(certificate: &mut Certificate, plan: &Plan, wanted: &Wanted, summary: &Summary) {
     let is_spread = |q: &&Certified| q.behaviour == Behaviour::Spreads && !vanishes(certificate, q);
@@ -243,11 +263,7 @@ fn remark(certificate: &mut Certificate, plan: &Plan, wanted: &Wanted, summary: 
         ));
     }
     if certificate.unresolved_energy_j > 0.0 {
-        say(format!(
-            "{:.1e} J of vibration is damped by the scheme at every one of these steps; the error bars of energies, velocities \
-             and displacements hold what it may add",
-            certificate.unresolved_energy_j
-        ));
+        say(unresolved(certificate.unresolved_energy_j, plan.deforms));
     }
     let left = not_refined(&plan.scene);
     if wanted.meshes > 0 && !left.is_empty() {
@@ -264,5 +280,20 @@ fn remark(certificate: &mut Certificate, plan: &Plan, wanted: &Wanted, summary: 
             "the run of the shortest step is inaccurate: {}",
             reasons::in_a_line(&summary.label.reasons)
         ));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::unresolved;
+
+    #[test]
+    fn energy_that_is_missing_is_vibration_only_where_blocks_deform() {
+        let [rigid, elastic] = [false, true].map(|deforms| unresolved(2.2e-6, deforms));
+        assert!(rigid.starts_with("the energy is off by up to 2.2e-6 J at every one"), "{rigid}");
+        assert!(
+            elastic.starts_with("2.2e-6 J of vibration is damped by the scheme at every one"),
+            "{elastic}"
+        );
     }
 }

@@ -1,7 +1,8 @@
 //! The label of a simulation that somebody else steps.
 
 use std::fmt;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::ops::ControlFlow;
+use std::sync::atomic::AtomicBool;
 
 use ndda_solver::StartSnapshot;
 use serde::{Deserialize, Serialize};
@@ -84,7 +85,8 @@ impl Driver {
         self.label_watched(&AtomicBool::new(false), &|_| {})
     }
 
-    /// As [`label`](Self::label); `tell` hears of steps that are about to be taken again, and raising `stop` ends them.
+    /// As [`label`](Self::label); `tell` hears of steps that are about to be taken again, and raising `stop` ends them: the label then says that it is not known
+    /// whether the result changes, and is given anew when it is next asked for.
     pub fn label_watched(&mut self, stop: &AtomicBool, tell: &dyn Fn(&str)) -> Label {
         if let Some(judged) = &self.course.judged {
             return judged.clone();
@@ -98,13 +100,12 @@ impl Driver {
         let other = match self.why_not_again() {
             _ if twins.is_empty() => None,
             Some(why) => Some(unrepeated(&twins, &why, twin::hits_again(&self.model.simulation))),
-            None => self.repeated(&twins, stop, tell),
+            None => match self.repeated(&twins, stop, tell) {
+                ControlFlow::Continue(other) => other,
+                ControlFlow::Break(unknown) => return unknown,
+            },
         };
-        let label = other.unwrap_or(label);
-        if !stop.load(Ordering::Relaxed) {
-            self.course.judged = Some(label.clone());
-        }
-        label
+        self.course.judged.insert(other.unwrap_or(label)).clone()
     }
 
     /// Whether all steps of the scene have been taken.
@@ -118,8 +119,13 @@ impl Driver {
         self.course.disturbed.map(|disturbed| disturbed.to_string()).or(has_parts)
     }
 
-    /// The label of an accurate scene whose steps, taken again, end elsewhere.
-    fn repeated(&mut self, twins: &[Twin], stop: &AtomicBool, tell: &dyn Fn(&str)) -> Option<Label> {
+    /// The label of an accurate scene whose steps, taken again, end elsewhere; broken off where somebody asks to end.
+    fn repeated(
+        &mut self,
+        twins: &[Twin],
+        stop: &AtomicBool,
+        tell: &dyn Fn(&str),
+    ) -> ControlFlow<Label, Option<Label>> {
         tell(&twin::told(twins, &self.model.simulation));
         let settle = self.model.loaded.scene.settle.map(crate::build::settle);
         let again = Again::FromStart { start: &self.course.built, settle };

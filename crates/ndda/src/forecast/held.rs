@@ -70,7 +70,7 @@ fn found(scene: &Scene, blocks: &BlockSet) -> Vec<(String, String, &'static str)
     if nothing_is(scene, blocks) {
         found.push((list.to_string(), NOTHING.to_string(), HOLD));
     }
-    if nothing_loads(scene) && something_moves(scene, blocks) {
+    if nothing_loads(scene) && blocks.len() > 1 && something_moves(scene, blocks) {
         found.push(("gravity_m_s2".to_string(), NOTHING_LOADS.to_string(), LOAD));
     }
     let rims = rim::leaving(scene, blocks);
@@ -134,15 +134,17 @@ mod tests {
             format!(
                 "(title: \"two\", time: (step_s: 1e-4, end_s: 1e-3),
                 materials: [(name: \"rock\", density_kg_m3: 2600, young_pa: 20e9, poisson: 0.25)],
-                blocks: [(name: \"a\", material: \"rock\", shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), {more})])"
+                blocks: [(name: \"a\", material: \"rock\", shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), {more}])"
             )
         };
         let messages = |more: &str| -> Vec<String> {
             let warnings = Model::from_text(&text(more)).unwrap().loaded.warnings;
             warnings.into_iter().map(|warning| warning.message).collect()
         };
-        assert_eq!(messages(""), [super::NOTHING_LOADS]);
-        assert_eq!(messages("velocity_m_s: (1, 0, 0)"), Vec::<String>::new());
+        let second = "), (name: \"b\", material: \"rock\", shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), at_m: (2, 0, 0))";
+        assert_eq!(messages(second), [super::NOTHING_LOADS]);
+        assert_eq!(messages(&format!("velocity_m_s: (1, 0, 0){second}")), Vec::<String>::new());
+        assert_eq!(messages(")"), Vec::<String>::new(), "a block alone overlaps nothing");
     }
 
     #[test]

@@ -8,7 +8,7 @@ use ndda_ranks::{Communicator, Gathered, RanksError, Topic};
 
 use super::Run;
 use super::outputs::SavedRun;
-use super::resume::{ResumeError, Resumed, last_checkpoint};
+use super::resume::{ResumeError, Resumed, is_judged, last_checkpoint};
 use crate::build::Choices;
 use crate::machine;
 
@@ -44,16 +44,16 @@ impl Run {
             };
             let folder = OutputFolder::open(folder).map_err(|error| given_up(error.into()))?;
             let saved = last_checkpoint(&folder, &mut warnings).map_err(given_up)?;
-            bytes.push(u8::from(folder.summary().exists()));
+            bytes.push(u8::from(is_judged(&folder)));
             bytes.extend(checkpoint::to_bytes(&saved));
             own = Some(folder);
         }
         let mut all = Gathered::default();
         ranks.exchange(Topic::Start, &bytes, &mut all)?;
         let unusable = || ResumeError::Unusable("the checkpoint of the first rank cannot be read".into());
-        let (has_summary, saved) = all.of(0).split_first().ok_or_else(unusable)?;
+        let (is_judged, saved) = all.of(0).split_first().ok_or_else(unusable)?;
         let saved: SavedRun = checkpoint::from_bytes(saved).ok_or_else(unusable)?;
-        let run = Self::resume_saved((saved, *has_summary == 1), (folder, own), Choices::default())?;
+        let run = Self::resume_saved((saved, *is_judged == 1), (folder, own), Choices::default())?;
         Ok(Resumed { run: run.on_ranks(ranks)?, warnings })
     }
 }

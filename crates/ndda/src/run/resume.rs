@@ -16,6 +16,7 @@ use super::run_log;
 use super::settling::OnTheWay;
 use crate::build::Choices;
 use crate::places::{self, name_of};
+use crate::summary::{Status, Summary};
 use crate::{Model, model};
 
 /// A run that goes on.
@@ -74,14 +75,14 @@ impl Run {
             return Err(ResumeError::Unusable(format!("{path} holds no run that could go on: {instead}")));
         }
         let mut warnings = Vec::new();
-        let saved = (last_checkpoint(&own, &mut warnings)?, own.summary().exists());
+        let saved = (last_checkpoint(&own, &mut warnings)?, is_judged(&own));
         let run = Self::resume_saved(saved, (folder, Some(own)), choices)?;
         Ok(Resumed { run, warnings })
     }
 
-    /// Resumes a run from its checkpoint and whether it has a summary; it is recorded in the folder if that is given as its own.
+    /// Resumes a run from its checkpoint and whether it has been judged; it is recorded in the folder if that is given as its own.
     pub(super) fn resume_saved(
-        (saved, has_summary): (SavedRun, bool),
+        (saved, is_judged): (SavedRun, bool),
         (folder, own): (&Path, Option<OutputFolder>),
         choices: Choices,
     ) -> Result<Self, ResumeError> {
@@ -92,9 +93,9 @@ impl Run {
         let name = saved.identity.file.display().to_string();
         let loaded = read::load_text(&name, &saved.identity.text, &[], Some(meshes))?;
         let mut run = Self::new(Model::resuming_with(loaded, meshes, choices)?);
-        // Killed between its last step and its summary, a run still owes the summary.
+        // Killed between its last step and its summary, a run still owes the summary; interrupted while it ran again, its label.
         let steps = run.model.steps();
-        if saved.settling.is_none() && saved.snapshot.state.step >= steps && has_summary {
+        if saved.settling.is_none() && saved.snapshot.state.step >= steps && is_judged {
             return Err(ResumeError::HasEnded(folder.to_path_buf()));
         }
         let SavedRun { identity, snapshot, earlier, settling } = saved;
@@ -138,6 +139,12 @@ impl Run {
         }
         Ok((identity, snapshot))
     }
+}
+
+/// Whether the folder of a run has a summary of its end. One of a run that was interrupted, on its way or while it ran again after its end, is none.
+pub(super) fn is_judged(folder: &OutputFolder) -> bool {
+    let summary = folder.summary();
+    summary.exists() && Summary::read(&summary).map_or(true, |read| read.status != Status::Interrupted)
 }
 
 /// The last checkpoint that can be read, of the scene that the log begins with.

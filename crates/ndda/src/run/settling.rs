@@ -144,3 +144,33 @@ fn unjudged(summary: &mut Summary, progress: &str) {
         summary.label = Label { word: LabelWord::Inaccurate, reasons: vec![reason] };
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::{Model, Run};
+
+    #[test]
+    fn a_slab_that_damped_contact_keeps_vibrating_is_told_how_it_comes_to_rest() {
+        let slab = |settle: &str| {
+            let text = format!(
+                "(title: \"slab\", time: (step_s: 1e-4, end_s: 1e-3), gravity_m_s2: (0, 0, -9.81), settle: ({settle}),
+                materials: [(name: \"rock\", young_pa: 2e10, poisson: 0.25, density_kg_m3: 2600)],
+                blocks: [
+                    (name: \"floor\", material: \"rock\", body: Fixed, shape: Box(size_m: (6, 4, 1), cells: (1, 1, 1)), at_m: (-1.5, -1.5, -1)),
+                    (name: \"a\", material: \"rock\", body: Affine, shape: Box(size_m: (1, 1, 0.3), cells: (1, 1, 1))),
+                ],
+                contact: Potential(penalty_pa: 1e9, potential: Smooth(), friction: (friction_deg: 30), restitution: 0.3))"
+            );
+            Run::new(Model::from_text(&text).unwrap())
+                .finish(&mut [])
+                .map(drop)
+                .map_err(|error| error.to_string())
+        };
+        let error = slab("").unwrap_err();
+        assert!(
+            error.contains("under friction on damped contact, write settle: (damping: Local())"),
+            "{error}"
+        );
+        assert_eq!(slab("damping: Local()"), Ok(()));
+    }
+}

@@ -12,7 +12,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::str::FromStr;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use ndda_io::read::LoadedScene;
@@ -186,7 +186,8 @@ pub(crate) enum Again<'a> {
 /// Positions [m] and velocities [m/s] of all nodes.
 type Ended = (Vec<Vec3>, Vec<Vec3>);
 
-/// Changes the label of an accurate run if a twin ends elsewhere, and books the time that this takes.
+/// Changes the label of an accurate run if a twin ends elsewhere, and books the time that this takes. Where somebody asks to end before the twins have ended,
+/// the run is interrupted: its label is not known yet.
 pub(super) fn judge(
     summary: &mut Summary,
     simulation: &mut Simulation,
@@ -194,40 +195,55 @@ pub(super) fn judge(
     (stop, strict): (&AtomicBool, bool),
 ) {
     let began = Instant::now();
-    if let Some(label) = label_of_twins(simulation, again, twins, stop) {
-        summary.label = label;
-        summary.status = if strict { Status::Failed } else { summary.status };
-    } else if stop.load(Ordering::Relaxed) {
-        summary.warnings.push(
-            "the second run was interrupted, so it is not known whether the motion is sensitive".into(),
-        );
+    match label_of_twins(simulation, again, twins, stop) {
+        ControlFlow::Continue(None) => {}
+        ControlFlow::Continue(Some(label)) => {
+            summary.label = label;
+            summary.status = if strict { Status::Failed } else { summary.status };
+        }
+        ControlFlow::Break(label) => (summary.label, summary.status) = (label, Status::Interrupted),
     }
     let spent_s = began.elapsed().as_secs_f64();
     summary.wall_s += spent_s;
     summary.stages_s.0.push((SECOND_RUN.into(), spent_s));
 }
 
-/// The label of an accurate run of which a twin ends elsewhere; none where all end beside it, or where somebody asks to end.
+/// The label of an accurate run of which a twin ends elsewhere; none where all end beside it. Broken off where somebody asks to end before that is known, with
+/// a label that says so.
 pub(crate) fn label_of_twins(
     simulation: &mut Simulation,
     again: &Again,
     twins: &[Twin],
     stop: &AtomicBool,
-) -> Option<Label> {
+) -> ControlFlow<Label, Option<Label>> {
     let contacts = simulation.replace_contacts(None);
     let parted = part(simulation, again, twins, stop);
     simulation.replace_contacts(contacts);
     let (word, reason) = match parted {
-        Ok(parted) => parted.map(|parted| (parted.word(), parted.to_string()))?,
+        Ok(ControlFlow::Break(())) => return ControlFlow::Break(interrupted(twins)),
+        Ok(ControlFlow::Continue(None)) => return ControlFlow::Continue(None),
+        Ok(ControlFlow::Continue(Some(parted))) => (parted.word(), parted.to_string()),
         Err(error) => (
             LabelWord::Sensitive,
             format!("a second run, whose start or step differs a little, stops {error}"),
         ),
     };
-    Some(Label { word, reasons: vec![reason] })
+    ControlFlow::Continue(Some(Label { word, reasons: vec![reason] }))
 }
 
-/// Runs twins of a simulation that has come to its end. None where all stay together, or where somebody asks to end.
+/// The label of an accurate run of which not all twins have ended.
+fn interrupted(twins: &[Twin]) -> Label {
+    let how = match (twins.contains(&PUSHES[0]), twins.contains(&Twin::HalfStep)) {
+        (true, true) => "from a slightly different start and with half the step",
+        (true, false) => "from a slightly different start",
+        (false, _) => "with half the step",
+    };
+    let reason =
+        format!("running the scene again {how} was interrupted: it is not known whether the result changes");
+    Label { word: LabelWord::Inaccurate, reasons: vec![reason] }
+}
+
+/// Runs twins of a simulation that has come to its end. None where all stay together; broken off where somebody asks to end before that is known.
 ///
 /// # Errors
 /// The message of the error that stops a twin.
@@ -236,7 +252,7 @@ fn part(
     again: &Again,
     twins: &[Twin],
     stop: &AtomicBool,
-) -> Result<Option<Parted>, String> {
+) -> Result<ControlFlow<(), Option<Parted>>, String> {
     // A twin through stages is pushed at the beginning of each.
     let pushes = match again {
         Again::FromStart { .. } => 1,
@@ -258,13 +274,13 @@ fn part(
                 through_stages::ended((loaded, folder), (twin, scale_m_s), ranks, stop)?
             }
         };
-        let Some(ended) = ended else { break };
+        let Some(ended) = ended else { return Ok(ControlFlow::Break(())) };
         let parted = parted(simulation, twin, &ended, drift_m);
         if parted.is_some() {
-            return Ok(parted);
+            return Ok(ControlFlow::Continue(parted));
         }
     }
-    Ok(None)
+    Ok(ControlFlow::Continue(None))
 }
 
 /// End of a twin from the start of its run, which is at its end before and after; none where somebody asks to end.

@@ -2,6 +2,7 @@
 
 use super::Check;
 use crate::scene::Reference;
+use crate::scene::turning::Rows;
 use crate::scene::{ContactAt, FactorRow, SettleDamping};
 
 impl Check<'_> {
@@ -67,8 +68,6 @@ impl Check<'_> {
             let message = format!("{} s does not come after {} s", rows[i].time_s, rows[i - 1].time_s);
             self.error(format!("{path}[{i}].time_s"), message, "sort the rows by time_s");
         }
-        let times: Vec<f64> = rows.iter().map(|row| row.time_s).collect();
-        let rises = |i: usize| rows[i + 1].factor - rows[i].factor;
-        self.turns(path, &times, |i| rises(i - 1) * rises(i) < 0.0);
+        self.turns(path, &Rows::of_factor(rows));
     }
 }

@@ -6,6 +6,7 @@ use super::Check;
 use crate::scene::MotionRow;
 use crate::scene::code::Code;
 use crate::scene::record::Prepared;
+use crate::scene::turning::Rows;
 use crate::scene::{By, Hold, Region};
 
 impl Check<'_> {
@@ -73,20 +74,13 @@ impl Check<'_> {
             );
         }
         rows.iter().for_each(|row| self.numbers(path, &row.displacement_m));
-        let along = |a: &[f64; 3], b: &[f64; 3]| (0..3).map(|i| a[i] * b[i]).sum::<f64>();
-        let way = |i: usize| -> [f64; 3] {
-            std::array::from_fn(|k| rows[i + 1].displacement_m[k] - rows[i].displacement_m[k])
-        };
-        let times: Vec<f64> = rows.iter().map(|row| row.time_s).collect();
-        self.turns(&format!("{path}[0]"), &times, |i| along(&way(i - 1), &way(i)) < 0.0);
+        self.turns(&format!("{path}[0]"), &Rows::of_motion(rows));
     }
 
-    /// Warns of the first row at which a table turns back between two neighbours that are less than a step apart.
-    pub(super) fn turns(&mut self, path: &str, times: &[f64], turns_at: impl Fn(usize) -> bool) {
+    /// Warns of the first row at which a table turns back within less than a step.
+    pub(super) fn turns(&mut self, path: &str, rows: &Rows) {
         let step_s = self.scene.time.step_s;
-        let unseen = |i: &usize| times[i + 1] - times[i - 1] < step_s && turns_at(*i);
-        if let Some(i) = (1..times.len().saturating_sub(1)).find(unseen) {
-            let gap_s = times[i + 1] - times[i - 1];
+        if let Some((i, gap_s)) = rows.turns_within(step_s) {
             let message =
                 format!("the motion turns back within {gap_s:.3e} s, less than a step of {step_s:.3e} s");
             let help = "a step follows its mean only: reduce time.step_s to follow it in full";

@@ -1,5 +1,7 @@
 //! When runs are repeated, and what is found.
 
+use std::sync::atomic::Ordering;
+
 use super::*;
 use crate::{Model, Run};
 
@@ -175,6 +177,20 @@ fn a_raft_that_its_steps_do_not_resolve_is_inaccurate_although_nothing_touches_i
 }
 
 #[test]
+fn a_raft_that_its_water_carries_from_the_start_is_accurate() {
+    for at in [0.0, 1e3] {
+        let text = format!(
+            "(title: \"raft\", time: (step_s: 2e-3, end_s: 2), gravity_m_s2: (0, 0, -10),
+            materials: [(name: \"wood\", young_pa: 1e8, poisson: 0.25, density_kg_m3: 500)],
+            blocks: [(name: \"a\", material: \"wood\", body: Rigid, shape: Box(size_m: (1, 1, 1), cells: (2, 2, 4)), at_m: ({at}, 0, 0))],
+            water: [(on: Part(block: \"a\", region: All), pressure: Level(at_m: (0, 0, 0.5)))])"
+        );
+        let summary = Run::new(Model::from_text(&text).unwrap()).finish(&mut []).unwrap().summary;
+        assert_eq!(summary.label.word, LabelWord::Accurate, "at {at}: {:?}", summary.label.reasons);
+    }
+}
+
+#[test]
 fn a_run_that_goes_on_is_repeated_as_it_began() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("cube.ron");
@@ -191,4 +207,30 @@ fn a_run_that_goes_on_is_repeated_as_it_began() {
         let resumed = Run::resume(&out).unwrap().run;
         assert_eq!(resumed.sensitivity, asked);
     }
+}
+
+#[test]
+fn a_run_that_is_interrupted_while_it_runs_again_is_judged_when_it_goes_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("cube.ron");
+    let text = "(title: \"cube\", time: (step_s: 1e-3, end_s: 0.1), gravity_m_s2: (0, 0, -9.81),
+        materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.2, density_kg_m3: 2600)],
+        blocks: [(name: \"cube\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)))])";
+    std::fs::write(&file, text).unwrap();
+    let (out, stop) = (folder.path().join("out"), Arc::new(AtomicBool::new(false)));
+    let asked = stop.clone();
+    let run = Run::new(Model::open(&file, &[]).unwrap());
+    let run = run.record(ndda_io::OutputFolder::create(&out, false).unwrap(), file.clone()).unwrap();
+    // Told of the repetition, somebody asks the run to end.
+    let run = run.strict(true).stop_when(stop).tell(move |_| asked.store(true, Ordering::Relaxed));
+    let cut = run.finish(&mut []).unwrap().summary;
+    assert_eq!((cut.status, cut.steps), (Status::Interrupted, 100));
+    assert_eq!(cut.label.word, LabelWord::Inaccurate);
+    let words = "with half the step was interrupted: it is not known whether the result changes";
+    assert!(cut.label.reasons[0].contains(words), "{:?}", cut.label.reasons);
+    let done = Run::resume(&out).unwrap().run.finish(&mut []).unwrap().summary;
+    assert_eq!((done.status, done.label.word), (Status::Done, LabelWord::Accurate), "{:?}", done.label);
+    assert_eq!(done.state_crc32, cut.state_crc32);
+    assert!(done.stages_s.0.iter().any(|(stage, _)| stage == SECOND_RUN));
+    assert!(matches!(Run::resume(&out), Err(crate::run::ResumeError::HasEnded(_))));
 }
