@@ -44,7 +44,7 @@ def test_coulomb_in_python_slides_as_the_closed_form() -> None:
 
 
 def test_areas_and_normal_forces_of_facets_are_those_of_the_contact_so_that_cohesion_holds_as_much() -> None:
-    cube = """(title: "cohesion", time: (step_s: 1e-4, end_s: 0.3), gravity_m_s2: (0, 0, -10), settle: (),
+    cube = """(title: "cohesion", time: (step_s: 1e-4, end_s: 0.3), gravity_m_s2: (0, 0, -10), gravity_ramp_s: 0.05,
         materials: [(name: "rock", young_pa: 1e9, poisson: 0, density_kg_m3: 1000)],
         blocks: [
             (name: "floor", material: "rock", body: Fixed, shape: Box(size_m: (9, 3, 1), cells: (1, 1, 1)), at_m: (-1, -1, -1)),
@@ -60,8 +60,9 @@ def test_areas_and_normal_forces_of_facets_are_those_of_the_contact_so_that_cohe
 
     simulation = ndda.Simulation(ndda.parse(cube), law=cohesion)
     simulation.run(until=0.3)
-    assert seen["area"] == pytest.approx(1.0, rel=1e-6)
-    assert seen["force"] == pytest.approx(1000.0, rel=1e-2)
+    assert seen["area"] == pytest.approx(1.0, rel=1e-4)
+    # Contact still vibrates a little after the ramp.
+    assert seen["force"] == pytest.approx(1000.0, rel=3e-2)
     # 100 Pa on 1 m² slow 100 kg by 1 m/s².
     assert simulation.blocks["slab"].velocity.mean(axis=0)[0] == pytest.approx(2.0 - 0.3, rel=1e-3)
 

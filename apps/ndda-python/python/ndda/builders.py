@@ -3482,7 +3482,8 @@ class Settle(Builder):
     Parameters
     ----------
     tolerance : float, optional
-        Speed left over the largest speed on the way [-]. Default: 1e-4.
+        Speed left over the largest speed on the way, and with `Adaptive` and `Local` damping unbalanced
+        forces over loads [-]. Default: 1e-4.
     most_steps : int, optional
         Steps after which it is given up. Default: 1000000.
     damping : SettleDampingChoice, optional
@@ -4155,7 +4156,8 @@ class Then:
         Parameters
         ----------
         tolerance : float, optional
-            Speed left over the largest speed on the way [-]. Default: 1e-4.
+            Speed left over the largest speed on the way, and with `Adaptive` and `Local` damping unbalanced
+            forces over loads [-]. Default: 1e-4.
         most_steps : int, optional
             Steps after which it is given up. Default: 1000000.
         damping : SettleDampingChoice, optional

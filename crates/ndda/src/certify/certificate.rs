@@ -354,15 +354,8 @@ mod tests {
     }
 
     fn basis(is_chaotic: bool) -> Basis<'static> {
-        Basis {
-            order: 2.0,
-            steps: 40,
-            step_s: 0.1,
-            least_mass_kg: 1.0,
-            of: &[],
-            is_chaotic,
-            is_unseen: false,
-        }
+        let (order, steps, step_s, least_mass_kg) = (2.0, 40, 0.1, 1.0);
+        Basis { order, steps, step_s, least_mass_kg, of: &[], is_chaotic, is_unseen: false }
     }
 
     fn histories(errors: [f64; 3]) -> Histories {

@@ -132,7 +132,7 @@ mod tests {
     fn blocks_that_nothing_loads_are_warned_of_and_those_that_move_by_themselves_are_not() {
         let text = |more: &str| {
             format!(
-                "(title: \"two\", time: (step_s: 1e-4, end_s: 1e-3),
+                "(title: \"two\", contact: Off, time: (step_s: 1e-4, end_s: 1e-3),
                 materials: [(name: \"rock\", density_kg_m3: 2600, young_pa: 20e9, poisson: 0.25)],
                 blocks: [(name: \"a\", material: \"rock\", shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), {more}])"
             )

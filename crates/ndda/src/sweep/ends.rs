@@ -74,7 +74,7 @@ mod tests {
     fn steps_that_do_not_divide_the_end_are_named_once() {
         let found = said(&[end("a", 1.0, 0.1), end("b", 1.0, 0.3), end("c", 1.0, 0.4)]).unwrap();
         assert!(
-            found.contains("2 of 3 do not end at time.end_s, such as c, which ends at 0.8 s in place of 1 s"),
+            found.contains("2 of 3 do not end at time.end_s, such as c, which ends at 1.2 s in place of 1 s"),
             "{found}"
         );
     }
