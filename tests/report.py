@@ -103,7 +103,8 @@ def check(browser, path, folder, scheme):
     page.on("pageerror", lambda error: complaints.append(str(error)))
     page.on("dialog", lambda dialog: (complaints.append("a dialog: " + dialog.message), dialog.dismiss()))
     page.on("request", lambda request: asked.append(request.url))
-    page.goto(path.resolve().as_uri())
+    # A machine that does other work as well takes its time.
+    page.goto(path.resolve().as_uri(), timeout=180_000)
     page.wait_for_selector("html[data-ready=yes]", state="attached", timeout=60_000)
     pictures = str(folder / f"{path.parent.name}_{scheme}") if folder else None
     found = check_blocks(page, pictures) if page.locator("#view").count() else "no blocks"
