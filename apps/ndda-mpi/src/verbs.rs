@@ -97,9 +97,7 @@ pub fn resume(args: &ResumeArgs, ranks: &Arc<dyn Communicator>) -> Result<u8, Fa
     let Resumed { run, warnings } = match Run::resume_on_ranks(&args.folder, ranks) {
         Ok(resumed) => resumed,
         Err(error @ ResumeError::HasEnded(_)) => {
-            let again = ", and `--sensitivity` repeats no run that has ended: run the scene anew with it";
-            let again = args.how.sensitivity.map_or("", |_| again);
-            say(ranks, &args.how, &format!("{error}{again}"));
+            say(ranks, &args.how, &error.told(args.how.sensitivity));
             return Ok(crate::DONE);
         }
         Err(ResumeError::Ranks(error)) => return Err(error.into()),

@@ -295,7 +295,7 @@ impl Run {
         let (folder, history) = outputs.end();
         let (sensitivity, built, tell, stop) = (self.sensitivity, self.built, self.tell, self.stop);
         let twins = match is_whole(&summary) {
-            true => sensitivity.twins(&simulation),
+            true => twin::twins(sensitivity, &simulation),
             false => Vec::new(),
         };
         let settle = loaded.scene.settle.map(crate::build::settle);

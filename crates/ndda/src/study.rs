@@ -67,7 +67,7 @@ impl Study {
     /// Repeats accurate runs of cases as is asked for, in place of what the study says.
     pub fn with_second_runs(mut self, asked: Option<SecondRuns>) -> Self {
         if let Some(asked) = asked {
-            self.cases.iter_mut().for_each(|case| case.sensitivity = asked.into());
+            self.cases.iter_mut().for_each(|case| case.sensitivity = asked);
         }
         self
     }

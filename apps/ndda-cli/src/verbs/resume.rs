@@ -34,11 +34,7 @@ fn resume_here(folder: &Path, options: &Options) -> u8 {
 fn refuse(error: &ResumeError, options: &Options) -> u8 {
     match error {
         ResumeError::HasEnded(_) => {
-            let again = options.sensitivity.map_or(
-                "",
-                |_| ", and `--sensitivity` repeats no run that has ended: run the scene anew with it",
-            );
-            let message = format!("{error}{again}");
+            let message = error.told(options.sensitivity);
             if !options.events.are_read() {
                 say(&message);
             }

@@ -5,6 +5,7 @@ mod check;
 mod distribution;
 mod vary;
 
+use std::fmt;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
@@ -80,13 +81,24 @@ pub struct Study {
 /// Whether accurate runs are repeated to see whether their result changes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum SecondRuns {
-    /// Where `ndda run` repeats them.
+    /// Those that have no contact, or are short and have friction or a scheme of first order, or in which three or more blocks have moved, or two that end beside each
+    /// other, or in which one has hopped several times with friction in between, or hit twice or more.
     #[default]
     Auto,
     /// All of them.
     Always,
     /// None.
     Never,
+}
+
+impl fmt::Display for SecondRuns {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(match self {
+            Self::Auto => "auto",
+            Self::Always => "always",
+            Self::Never => "never",
+        })
+    }
 }
 
 impl FromStr for SecondRuns {

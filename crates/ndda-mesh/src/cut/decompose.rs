@@ -17,11 +17,11 @@ const CANDIDATES: usize = 24;
 /// Parts and surface must agree in volume to this fraction.
 const SAME_VOLUME: f64 = 1e-6;
 /// Faces of two parts are the same if they differ by less than this fraction of their area from what they share.
-const SAME_AREA: f64 = 1e-9;
+pub(super) const SAME_AREA: f64 = 1e-9;
 /// Most convex parts of a domain.
 const MOST_PARTS: usize = 10_000;
 /// Rounds after which parts are left as they are, should rounding keep them from meeting face to face.
-const MOST_ROUNDS: usize = 20;
+pub(super) const MOST_ROUNDS: usize = 20;
 
 /// Triangles, later convex polygons, of the surface, with its index.
 type Polygon = (u32, Vec<Vec3>);

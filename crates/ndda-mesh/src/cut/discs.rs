@@ -73,21 +73,21 @@ impl DiscCounts {
         if section.iter().all(is_beside) {
             return false;
         }
-        let (mut section_m2, mut covered_m2, mut covers_all) = (0.0, 0.0, true);
+        let (mut section_m2, mut common_m2, mut covers_all) = (0.0, 0.0, true);
         for (part, face) in section {
             let area_m2 = part.area_vector(face).norm();
             let covers_face = part.ring(face).all(|x| (x - disc.center_m).norm() <= disc.radius_m);
             section_m2 += area_m2;
-            covered_m2 += if covers_face { area_m2 } else { covered_of_m2(part, face, disc) };
+            common_m2 += if covers_face { area_m2 } else { covered_m2(part, face, disc) };
             covers_all &= covers_face;
         }
         let cuts = match disc.rule {
-            DiscRule::Share(share) => covered_m2 >= share * section_m2,
+            DiscRule::Share(share) => common_m2 >= share * section_m2,
             DiscRule::Meets => true,
             DiscRule::Covers => covers_all,
         };
         let report = &mut self.report;
-        report.disc_m2 += covered_m2;
+        report.disc_m2 += common_m2;
         if cuts {
             report.cuts += 1;
             report.ends_in_cut += usize::from(!covers_all);
@@ -116,7 +116,7 @@ impl DiscShape {
 
 /// Area that a convex face and a disc in its plane have in common [m²]: the sum over the edges of what the triangle of edge and centre has
 /// in common with the circle.
-fn covered_of_m2(part: &Polyhedron, face: &Face, disc: &DiscShape) -> f64 {
+fn covered_m2(part: &Polyhedron, face: &Face, disc: &DiscShape) -> f64 {
     let normal = part.area_vector(face).normalize();
     let [u, v] = frame(&normal);
     let ring: Vec<[f64; 2]> = part
@@ -182,7 +182,7 @@ mod tests {
         let part = Polyhedron::cuboid(Vec3::new(0.0, 0.0, -1.0), Vec3::new(1.0, 1.0, 0.0));
         let top = part.faces.iter().find(|face| part.area_vector(face).z > 0.5).unwrap();
         let center_m = Vec3::new(center[0], center[1], 0.0);
-        covered_of_m2(&part, top, &DiscShape { center_m, radius_m, rule: DiscRule::Meets })
+        covered_m2(&part, top, &DiscShape { center_m, radius_m, rule: DiscRule::Meets })
     }
 
     #[test]

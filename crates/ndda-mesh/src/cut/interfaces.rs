@@ -5,7 +5,7 @@
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use super::blocks::Blocks;
-use super::decompose::beside;
+use super::decompose::{MOST_ROUNDS, SAME_AREA, beside};
 use super::discs::DiscCounts;
 use super::domain::Domain;
 use super::joints::CuttingPlane;
@@ -17,10 +17,6 @@ use super::surfaces::{Neighbour, Surface, SurfaceKind};
 
 /// Planes whose normals have a smaller cosine are not looked at further.
 const ALIKE: f64 = 0.999;
-/// Faces of glued parts are the same if they differ by less than this fraction of their area from what they share.
-const SAME_AREA: f64 = 1e-9;
-/// Rounds after which parts are left as they are, should rounding keep them from meeting face to face.
-const MOST_ROUNDS: usize = 20;
 
 /// Parts glued blocks along the joints that lie in the faces in which they meet; whether there are any. Persistence and the rules of discs decide
 /// once for all faces that hang together.

@@ -230,7 +230,7 @@ impl Ledger {
         self.rounding_j = self.rounding_j.max(energy_j);
     }
 
-    /// What all loads and supports have exchanged by now, however much of it balances [N s].
+    /// Sum of the sizes of all impulses of loads and supports so far, whether they balance or not [N s].
     pub(crate) fn load_impulse(&self) -> f64 {
         self.load_impulse
     }

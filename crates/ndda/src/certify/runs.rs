@@ -220,7 +220,7 @@ fn estimates(wanted: &Wanted) -> String {
     .into()
 }
 
-/// What is said of a table that turns back within the shortest step.
+/// The remark on a table that turns back within the shortest step.
 fn unseen(Turning { path, within_s }: &Turning, step_s: f64) -> String {
     format!(
         "{path} turns back within {within_s:.2e} s, less than the shortest step of {step_s:e} s, which sees its mean only: all runs may be wrong alike. Error \
@@ -229,7 +229,7 @@ fn unseen(Turning { path, within_s }: &Turning, step_s: f64) -> String {
     )
 }
 
-/// What is said of energy that is missing at every step, or comes from nowhere.
+/// The remark on energy that is lost or gained in every step.
 fn unresolved(energy_j: f64, deforms: bool) -> String {
     let what = match deforms {
         true => format!("{energy_j:.1e} J of vibration is damped by the scheme at every one of these steps"),

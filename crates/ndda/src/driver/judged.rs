@@ -96,7 +96,7 @@ impl Driver {
         if label.word != LabelWord::Accurate || !self.has_ended() {
             return label;
         }
-        let twins = Sensitivity::Auto.twins(&self.model.simulation);
+        let twins = twin::twins(Sensitivity::Auto, &self.model.simulation);
         let other = match self.why_not_again() {
             _ if twins.is_empty() => None,
             Some(why) => Some(unrepeated(&twins, &why, twin::hits_again(&self.model.simulation))),

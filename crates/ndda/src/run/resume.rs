@@ -14,6 +14,7 @@ use super::identity::Identity;
 use super::outputs::SavedRun;
 use super::run_log;
 use super::settling::OnTheWay;
+use super::twin::Sensitivity;
 use crate::build::Choices;
 use crate::places::{self, name_of};
 use crate::summary::{Status, Summary};
@@ -48,6 +49,20 @@ pub enum ResumeError {
     /// The ranks of the run cannot go on.
     #[error(transparent)]
     Ranks(#[from] RanksError),
+}
+
+impl ResumeError {
+    /// Its message; that of a run that has ended says, too, that no second runs are made, where they are asked for.
+    pub fn told(&self, asked: Option<Sensitivity>) -> String {
+        match (self, asked) {
+            (Self::HasEnded(_), Some(_)) => {
+                format!(
+                    "{self}, and `--sensitivity` repeats no run that has ended: run the scene anew with it"
+                )
+            }
+            _ => self.to_string(),
+        }
+    }
 }
 
 impl Run {

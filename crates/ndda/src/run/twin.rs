@@ -7,68 +7,24 @@
 mod parted;
 mod through_stages;
 
-use std::fmt;
 use std::ops::ControlFlow;
 use std::path::Path;
-use std::str::FromStr;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use ndda_io::read::LoadedScene;
-use ndda_io::study::SecondRuns;
+pub use ndda_io::study::SecondRuns as Sensitivity;
 
 use ndda_mesh::geometry::Aabb;
 use ndda_mesh::{BlockId, Vec3};
 use ndda_solver::{BodyKind, Settle, Simulation, StartSnapshot, StepError};
-use serde::{Deserialize, Serialize};
 
 use super::unless_ended;
 use crate::judge::words::SECOND_RUN;
 use crate::summary::{Label, LabelWord, Status, Summary};
 pub(super) use parted::Parted;
 use parted::{farthest_m, height_m, parted};
-
-/// Whether twins of the run are run after it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Sensitivity {
-    /// After an accurate run that has no contact, or is short and has friction or a scheme of first order, or in which three or more blocks have moved, or two that end beside each other, or in which one has
-    /// hopped several times with friction in between, or hit twice or more.
-    #[default]
-    Auto,
-    /// After each accurate run.
-    Always,
-    /// Not at all.
-    Never,
-}
-
-impl fmt::Display for Sensitivity {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str(match self {
-            Self::Auto => "auto",
-            Self::Always => "always",
-            Self::Never => "never",
-        })
-    }
-}
-
-impl From<SecondRuns> for Sensitivity {
-    fn from(asked: SecondRuns) -> Self {
-        match asked {
-            SecondRuns::Auto => Self::Auto,
-            SecondRuns::Always => Self::Always,
-            SecondRuns::Never => Self::Never,
-        }
-    }
-}
-
-impl FromStr for Sensitivity {
-    type Err = String;
-
-    fn from_str(word: &str) -> Result<Self, String> {
-        word.parse::<SecondRuns>().map(Self::from)
-    }
-}
 
 /// How a twin differs from its run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -113,40 +69,38 @@ pub(crate) fn may_want_half_step(simulation: &Simulation) -> bool {
     simulation.blocks().ids().any(may_move)
 }
 
-impl Sensitivity {
-    /// The twins of an accurate run that ends here, to be run one after the other until one parts.
-    pub(crate) fn twins(self, simulation: &Simulation) -> Vec<Twin> {
-        let ids = || simulation.blocks().ids();
-        let moved = || {
-            ids().filter(|&block| {
-                let gone_m =
-                    farthest_m(simulation, block, simulation.start_position(), &simulation.state().position);
-                moves(simulation, block) && gone_m > 0.1 * height_m(simulation, block)
-            })
-        };
-        let hops = hops(simulation);
-        let (pushes, halves) = match self {
-            Self::Never => (false, false),
-            // Without impacts small differences hardly grow; whether the step resolves loads that depend on positions, only a shorter step shows.
-            _ if !simulation.has_contact() => (false, may_want_half_step(simulation)),
-            Self::Always => {
-                let any = ids().any(|block| moves(simulation, block));
-                (any, any)
-            }
-            Self::Auto => {
-                let moved: Vec<BlockId> = moved().take(ENOUGH).collect();
-                let halves = hits_again(simulation) || always_halves(simulation, simulation.state().step);
-                (moved.len() == ENOUGH || lie_together(simulation, &moved) || hops, halves)
-            }
-        };
-        let mut twins = match (pushes, hops) {
-            (false, _) => Vec::new(),
-            (true, false) => PUSHES[..1].to_vec(),
-            (true, true) => PUSHES.to_vec(),
-        };
-        twins.extend(halves.then_some(Twin::HalfStep));
-        twins
-    }
+/// The twins of an accurate run that ends here, to be run one after the other until one parts.
+pub(crate) fn twins(asked: Sensitivity, simulation: &Simulation) -> Vec<Twin> {
+    let ids = || simulation.blocks().ids();
+    let moved = || {
+        ids().filter(|&block| {
+            let gone_m =
+                farthest_m(simulation, block, simulation.start_position(), &simulation.state().position);
+            moves(simulation, block) && gone_m > 0.1 * height_m(simulation, block)
+        })
+    };
+    let hops = hops(simulation);
+    let (pushes, halves) = match asked {
+        Sensitivity::Never => (false, false),
+        // Without impacts small differences hardly grow; whether the step resolves loads that depend on positions, only a shorter step shows.
+        _ if !simulation.has_contact() => (false, may_want_half_step(simulation)),
+        Sensitivity::Always => {
+            let any = ids().any(|block| moves(simulation, block));
+            (any, any)
+        }
+        Sensitivity::Auto => {
+            let moved: Vec<BlockId> = moved().take(ENOUGH).collect();
+            let halves = hits_again(simulation) || always_halves(simulation, simulation.state().step);
+            (moved.len() == ENOUGH || lie_together(simulation, &moved) || hops, halves)
+        }
+    };
+    let mut twins = match (pushes, hops) {
+        (false, _) => Vec::new(),
+        (true, false) => PUSHES[..1].to_vec(),
+        (true, true) => PUSHES.to_vec(),
+    };
+    twins.extend(halves.then_some(Twin::HalfStep));
+    twins
 }
 
 /// The line that announces repetitions of a run.

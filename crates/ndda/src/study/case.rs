@@ -56,7 +56,7 @@ pub fn grid(loaded: &LoadedStudy) -> Vec<Point> {
 /// # Errors
 /// [`StudyError::Names`] when two cases would have one folder.
 pub fn cases(loaded: &LoadedStudy) -> Result<Vec<Case>, StudyError> {
-    let (repeats, sensitivity) = (loaded.study.repeats, loaded.study.second_runs.into());
+    let (repeats, sensitivity) = (loaded.study.repeats, loaded.study.second_runs);
     let cases = grid(loaded).into_iter().map(|(labels, overrides)| Case {
         name: name(&labels),
         labels,

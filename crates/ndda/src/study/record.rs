@@ -62,7 +62,7 @@ fn alone() -> u16 {
     1
 }
 
-/// What a record that does not say so was run with.
+/// Sensitivity of a record that was written before it was kept: no run was repeated.
 fn never() -> Sensitivity {
     Sensitivity::Never
 }

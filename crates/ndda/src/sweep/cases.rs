@@ -37,7 +37,7 @@ pub struct SweepCase {
 /// [`StudyError::Names`] when two points of the grid have one name, [`StudyError::Samples`] where they cannot be drawn.
 pub fn cases(loaded: &LoadedStudy, overrides: &[String]) -> Result<Vec<SweepCase>, StudyError> {
     let samples = samples(loaded)?;
-    let sensitivity = loaded.study.second_runs.into();
+    let sensitivity = loaded.study.second_runs;
     let mut all = Vec::new();
     for (point, (labels, own)) in grid(loaded).iter().enumerate() {
         let of_point = name(labels);

@@ -13,7 +13,7 @@ const SAME: f64 = 1e-9;
 /// When a case ends.
 struct End<'a> {
     name: &'a str,
-    /// What its scene asks for, and when its last step ends [s].
+    /// `time.end_s` of its scene, and the end of its last step [s].
     asked_s: f64,
     reached_s: f64,
 }
@@ -24,7 +24,7 @@ impl End<'_> {
     }
 }
 
-/// What is said where cases end at different times because not all their steps divide the end that is asked for.
+/// The warning that cases end at different times, because not all their steps divide `time.end_s`.
 pub(super) fn differing(sweep: &Sweep) -> Option<String> {
     let sets_time = |text: &String| text.starts_with("time") || text.starts_with("parameters");
     if !sweep.cases.iter().any(|case| case.case.overrides.iter().any(sets_time)) {

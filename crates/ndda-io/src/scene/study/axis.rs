@@ -1,4 +1,4 @@
-//! What varies in a study.
+//! Axes of a study: the values of a scene that vary.
 
 use std::collections::BTreeMap;
 

@@ -47,7 +47,7 @@ pub(super) fn creep(simulation: &Simulation) -> [Entry; 2] {
     ]
 }
 
-/// What the scene does not have yet of what keeps contact from vibrating.
+/// Cures of vibrating contact that the scene does not have yet.
 fn against_creep(is_damped: bool, began_at_rest: bool) -> &'static str {
     match (is_damped, began_at_rest) {
         (false, false) => {
