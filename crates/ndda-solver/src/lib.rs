@@ -101,7 +101,7 @@ pub use linear::linear_solver::{
     Factor, FactorError, LinearSolver, MULTI, Scratch, SolveError, SymmetricMatrix,
 };
 pub use linear::supernodal::{Supernodal, SupernodalFactor};
-pub use sink::{RunError, Sink, SinkError, View, advance, resume, run, show, unseen_step};
+pub use sink::{RunError, Sink, SinkError, View, advance, resume, run, show, show_start, unseen_step};
 pub use step::Simulation;
 pub use step::change::TakeOverError;
 pub use step::control::AutoStep;

@@ -11,7 +11,7 @@ use crate::step::report::StepReport;
 pub struct View<'a> {
     /// The simulation after the step.
     pub simulation: &'a mut Simulation,
-    /// Report on the step; default before the first.
+    /// Report on the step; before the first, [what is known then](Simulation::report_at_start).
     pub report: &'a StepReport,
     /// Energies and momenta, if some sink wanted them at this step.
     pub sample: Option<&'a Sample>,
@@ -55,7 +55,7 @@ pub trait Sink {
 /// # Errors
 /// [`RunError`] of the step or sink that failed.
 pub fn run(simulation: &mut Simulation, steps: u64, sinks: &mut [&mut dyn Sink]) -> Result<(), RunError> {
-    match show(simulation, steps, &StepReport::default(), sinks)? {
+    match show_start(simulation, steps, sinks)? {
         ControlFlow::Continue(()) => resume(simulation, steps, sinks),
         ControlFlow::Break(()) => Ok(()),
     }
@@ -99,6 +99,20 @@ pub fn unseen_step(
     let next = simulation.state().step + 1;
     simulation.watch_contacts(sinks.iter().any(|sink| sink.wants_contacts(next)));
     simulation.step()
+}
+
+/// Shows the start to the sinks, with contact where the scene has come to rest; `Break` if one of them ends the run.
+///
+/// # Errors
+/// As [`show`], or of contact that cannot be computed.
+pub fn show_start(
+    simulation: &mut Simulation,
+    steps: u64,
+    sinks: &mut [&mut dyn Sink],
+) -> Result<ControlFlow<()>, RunError> {
+    simulation.watch_contacts(sinks.iter().any(|sink| sink.wants_contacts(0)));
+    let report = simulation.report_at_start()?;
+    show(simulation, steps, &report, sinks)
 }
 
 /// Shows a simulation to the sinks as it is now, of a run of `steps`; `Break` if one of them ends the run.

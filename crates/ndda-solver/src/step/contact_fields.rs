@@ -7,16 +7,20 @@ use ndda_mesh::{BlockId, NodeId, Vec3};
 use crate::step::Simulation;
 
 impl Simulation {
-    /// Contact force on each node in the last step [N], friction included; zero before the first step.
+    /// Contact force on each node in the last step [N], friction included, bolts not; zero where contact has not been evaluated yet. At the start of a
+    /// scene that has settled it is that of [`report_at_start`](Self::report_at_start).
     ///
     /// Where contact gathers the forces on a block on a few of its nodes, they are shown where facets press instead, on the nearest
     /// triangle of the block, if contacts of the step are kept because a [`Sink`](crate::sink::Sink) requires them.
     pub fn contact_forces_n(&self) -> Vec<Vec3> {
-        if self.state.step == 0 {
+        if !self.audit.contact_is_known {
             return vec![Vec3::zeros(); self.scratch.force.len()];
         }
         let mut forces: Vec<Vec3> =
             self.scratch.force.iter().zip(self.loads.total()).map(|(f, load)| f - load).collect();
+        if let Some(bolts) = &self.bolts {
+            forces.iter_mut().zip(&bolts.force).for_each(|(force, pull)| *force -= pull);
+        }
         let (Some(model), Some(contacts)) = (&self.contact, &self.audit.contacts) else { return forces };
         let gathered: Vec<bool> =
             self.problem.blocks.ids().map(|block| model.uses_host_forces(block)).collect();

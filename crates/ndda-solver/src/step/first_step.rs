@@ -6,10 +6,12 @@
 //! block as a whole at the start, that is (ω Δt)⁴/128. o never changes: x + o is what moves by the scheme and keeps its
 //! energy and angular momentum, while x falls by ½ g t² from where it was put.
 
+use ndda_contact::ContactReport;
 use ndda_mesh::{BlockSet, Vec3};
 
 use crate::error::StepError;
 use crate::step::Simulation;
+use crate::step::report::StepReport;
 
 impl Simulation {
     /// Sets the contact offsets in the first step, where the scheme needs them.
@@ -53,13 +55,38 @@ impl Simulation {
         Ok(())
     }
 
-    /// Loads and contact where the blocks are now [N], which are then the forces of the step, too; nothing else of it is remembered.
-    pub(crate) fn force_at_start(&mut self) -> Result<Vec<Vec3>, StepError> {
-        let force = self.without_memory(|simulation| {
+    /// What is known before the first step: contact at rest where a scene has settled; nothing where blocks are as drawn, since contact is evaluated in
+    /// steps. Facets are noted if they are [watched](Self::watch_contacts).
+    ///
+    /// # Errors
+    /// [`StepError::Contact`] when contact cannot be computed.
+    pub fn report_at_start(&mut self) -> Result<StepReport, StepError> {
+        if self.state.step > 0 || !self.began_at_rest() || self.contact.is_none() {
+            return Ok(StepReport::default());
+        }
+        self.gather_loads();
+        let (force, contact) = self.contact_where_placed()?;
+        self.scratch.force = force;
+        self.audit.contact_is_known = true;
+        self.note_contacts();
+        let rates2 = self.problem.blocks.ids().map(|block| self.contact_rate2(block));
+        let h = self.part_s * rates2.fold(0.0, f64::max).sqrt();
+        Ok(StepReport { contact, h, ..StepReport::default() })
+    }
+
+    /// Loads and contact where the blocks are now [N], and the report on contact; nothing of it is remembered.
+    fn contact_where_placed(&mut self) -> Result<(Vec<Vec3>, ContactReport), StepError> {
+        self.without_memory(|simulation| {
             simulation.scratch.force.copy_from_slice(simulation.loads.total());
             simulation.scratch.contact_position.copy_from_slice(&simulation.state.position);
-            simulation.add_contact_forces(None).map(|_| simulation.scratch.force.clone())
-        })?;
+            let report = simulation.add_contact_forces(None)?;
+            Ok((simulation.scratch.force.clone(), report))
+        })
+    }
+
+    /// Loads and contact where the blocks are now [N], which are then the forces of the step, too; nothing else of it is remembered.
+    pub(crate) fn force_at_start(&mut self) -> Result<Vec<Vec3>, StepError> {
+        let (force, _) = self.contact_where_placed()?;
         self.scratch.force.copy_from_slice(&force);
         Ok(force)
     }

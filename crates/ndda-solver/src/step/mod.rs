@@ -183,6 +183,8 @@ pub(crate) struct Audit {
     pub(crate) travel: Travel,
     /// Facets in contact in the last step, if they were requested.
     pub(crate) contacts: Option<Vec<FacetContact>>,
+    /// Whether forces of contact are those of the present state: of its last step, or of its start at rest.
+    pub(crate) contact_is_known: bool,
     /// Uncertainty of the direction of contact forces in this step, as a fraction of their size: the largest penetration ratio, or 0 where friction
     /// everywhere can carry that much.
     pub(crate) direction_uncertainty: f64,
@@ -215,6 +217,7 @@ impl Simulation {
         self.gather_loads();
         self.offset_contact_in_the_first_step()?;
         let (contact, iterations) = self.gather_contact()?;
+        self.audit.contact_is_known = true;
         self.watch_contact(&contact);
         watch.stop(&mut self.audit.stages.contact_s);
         self.scale_forces();

@@ -141,6 +141,7 @@ impl Simulation {
                 stages: StageTimes::default(),
                 travel: Travel::new(smallest_height_m),
                 contacts: None,
+                contact_is_known: false,
                 direction_uncertainty: 0.0,
             },
             problem: Problem {

@@ -96,11 +96,18 @@ impl Simulation {
             self.scratch.contact_stiffness.fill(0.0);
         }
         self.scratch.friction_force.fill(Vec3::zeros());
+        self.forget_contact();
         self.place_kept_forces();
         self.place_driving_forces();
         self.restore_stage(stage);
         self.control.iter_mut().for_each(|control| control.restore_balance(step_balance));
         Ok(())
+    }
+
+    /// Forgets contact of a step that is not the last one of the present state.
+    fn forget_contact(&mut self) {
+        self.audit.contact_is_known = false;
+        self.audit.contacts.iter_mut().for_each(Vec::clear);
     }
 
     /// Refuses a snapshot of which something has another size than here.
@@ -141,6 +148,7 @@ impl Simulation {
         self.state.inertia.fill(Inertia::default());
         self.state.step = 0;
         self.settling = None;
+        self.forget_contact();
         self.place_loads_now();
         self.state.bolts.forget_work();
         self.audit.ledger = self.new_ledger((Vec3::zeros(), Vec3::zeros()));

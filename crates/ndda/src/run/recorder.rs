@@ -7,7 +7,7 @@ use std::time::Instant;
 use ndda_io::scene::Scene;
 use ndda_io::table::Table;
 use ndda_io::{History, WriteError};
-use ndda_mesh::{BlockId, Vec3};
+use ndda_mesh::BlockId;
 use ndda_solver::{Sample, Simulation, Sink, SinkError, View};
 use serde::{Deserialize, Serialize};
 
@@ -293,7 +293,7 @@ impl Sink for Recorder {
             self.row.extend(monitor.velocity(simulation).iter());
         }
         for &block in &self.held {
-            let reaction = if sample.step == 0 { Vec3::zeros() } else { simulation.reaction_n(block) };
+            let reaction = simulation.reaction_n(block);
             self.row.extend(reaction.iter());
         }
         if self.extras.bolts {

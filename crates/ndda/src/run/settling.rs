@@ -147,7 +147,85 @@ fn unjudged(summary: &mut Summary, progress: &str) {
 
 #[cfg(test)]
 mod tests {
+    use std::ops::ControlFlow;
+
+    use ndda_mesh::Vec3;
+    use ndda_solver::{Sink, SinkError, View};
+
     use crate::{Model, Run};
+
+    /// Contact forces on a block in each step, from the nodes and from the facets, and pairs in contact [N].
+    struct Presses(Vec<(Vec3, Vec3, u64)>);
+
+    impl Sink for Presses {
+        fn wants_contacts(&self, _: u64) -> bool {
+            true
+        }
+
+        fn step_done(&mut self, view: &mut View) -> Result<ControlFlow<()>, SinkError> {
+            let simulation = &*view.simulation;
+            let (blocks, block) = (simulation.blocks(), simulation.blocks().ids().last().unwrap());
+            let on_nodes = simulation.contact_forces_n()[blocks.nodes_of(block)].iter().sum();
+            let mut of_facets = Vec3::zeros();
+            for contact in simulation.contacts() {
+                let force_n = contact.push_n + contact.friction_n;
+                let is_own = blocks.triangle_block[contact.facet.index()] == block;
+                of_facets += if is_own { force_n } else { -force_n };
+            }
+            self.0.push((on_nodes, of_facets, view.report.contact.contact_pairs as u64));
+            Ok(ControlFlow::Continue(()))
+        }
+    }
+
+    #[test]
+    fn contact_and_reactions_of_a_settled_scene_are_known_before_its_first_step() {
+        let (weight_n, tension_n) = (26_000.0, 5e4);
+        for (body, bolts) in [("Rigid", 0), ("Elastic", 0), ("Rigid", 1), ("Elastic", 1)] {
+            let bolt = [
+                "",
+                "(name: \"anchor\", at: Line(from_m: (0.5, 0.5, 1), to_m: (0.5, 0.5, -0.9)), pretension_n: 5e4, plate: (),
+                steel: (young_pa: 2e11, area_m2: 5e-4, yield_n: 2e5), grout: (stiffness_n_m2: 2e9, strength_n_m: 4e5, from_m: 1))",
+            ];
+            let text = format!(
+                "(title: \"a block at rest\", time: (step_s: 1e-4, end_s: 1e-3), gravity_m_s2: (0, 0, -10), settle: (damping: Local()),
+                materials: [(name: \"rock\", young_pa: 1e10, poisson: 0.25, density_kg_m3: 2600)],
+                blocks: [
+                    (name: \"floor\", material: \"rock\", body: Fixed, shape: Box(size_m: (3, 3, 1), cells: (1, 1, 1)), at_m: (-1, -1, -1)),
+                    (name: \"cube\", material: \"rock\", body: {body}, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1))),
+                ],
+                bolts: [{}], output: (reactions: true),
+                contact: Potential(penalty_pa: 1e9, friction: (friction_deg: 30)))",
+                bolt[bolts]
+            );
+            let mut presses = Presses(Vec::new());
+            let outcome = Run::new(Model::from_text(&text).unwrap()).finish(&mut [&mut presses]).unwrap();
+            let most_n = weight_n + tension_n * bolts as f64;
+            let least_n = weight_n + 0.9 * tension_n * bolts as f64;
+            for step in [0, 5] {
+                let (on_nodes, of_facets, pairs) = presses.0[step];
+                assert!(pairs > 0, "{body} {bolts} {step}");
+                let differ_n = (on_nodes - of_facets).norm();
+                assert!(differ_n < 1e-9 * most_n, "{body} {bolts} {step}: {on_nodes} and {of_facets}");
+                assert!(
+                    (0.999 * least_n..1.001 * most_n).contains(&on_nodes.z),
+                    "{body} {bolts}: {on_nodes}"
+                );
+                assert!(on_nodes.xy().norm() < 1e-3 * most_n, "{body} {bolts}: {on_nodes}");
+            }
+            let history = outcome.history.unwrap();
+            let column = |name: &str| {
+                let column = history.names.iter().position(|known| known == name).unwrap();
+                &history.columns[column]
+            };
+            assert!(["contact_pairs", "penetration_ratio", "h"].iter().all(|name| column(name)[0] > 0.0));
+            // The floor weighs nine times as much.
+            let held_n = &column("floor.reaction_z_n")[..2];
+            assert!(
+                held_n.iter().all(|n| (n - 10.0 * weight_n).abs() < 1e-3 * weight_n),
+                "{body} {bolts}: {held_n:?}"
+            );
+        }
+    }
 
     #[test]
     fn a_slab_that_damped_contact_keeps_vibrating_is_told_how_it_comes_to_rest() {

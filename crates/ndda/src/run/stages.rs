@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use ndda_io::read::LoadedScene;
 use ndda_io::scene::Settle;
-use ndda_solver::{RunError, Settled, Simulation, StageStart, StepReport, TakeOverError};
+use ndda_solver::{RunError, Settled, Simulation, StageStart, TakeOverError};
 
 use super::outputs::Outputs;
 use super::rest::Watch;
@@ -36,9 +36,8 @@ impl Course<'_> {
         goes_on: bool,
     ) -> Result<(), RunError> {
         let steps = build::all_steps(&self.loaded.scene);
-        let shown = goes_on
-            || ndda_solver::show(simulation, steps, &StepReport::default(), &mut [&mut *outputs])?
-                .is_continue();
+        let shown =
+            goes_on || ndda_solver::show_start(simulation, steps, &mut [&mut *outputs])?.is_continue();
         if shown { self.go(simulation, outputs, &mut |_| {}) } else { Ok(()) }
     }
 
