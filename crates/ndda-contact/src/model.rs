@@ -254,6 +254,8 @@ pub struct FacetMemory {
     /// Shear force on the contactor in the facet's own basis (first edge, normal × first edge) [N].
     /// The basis turns with the facet, so the force does too.
     pub shear_n: [f64; 2],
+    /// Torque of its shear spring about its normal [N m].
+    pub twist_n_m: f64,
     /// Area in contact [m²].
     pub area_m2: f64,
     /// Whether cohesion is gone.
@@ -385,6 +387,8 @@ pub struct FacetContact {
     pub push_n: Vec3,
     /// Friction on the triangle, or the shear of a bond [N].
     pub friction_n: Vec3,
+    /// Moment on the triangle about `center`, besides that of both forces there: of friction of a face that turns, and of contact damping [N m].
+    pub couple_n_m: Vec3,
     /// Whether friction holds it.
     pub sticks: bool,
 }

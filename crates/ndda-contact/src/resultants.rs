@@ -60,7 +60,8 @@ fn resultant(
         slides += if facet.sticks { 0.0 } else { facet.area_m2 };
     }
     center = facets[0].center + if weight > 0.0 { center / weight } else { Vec3::zeros() };
-    let moment = |f: &FacetContact| sign(f) * (f.center - center).cross(&(f.push_n + f.friction_n));
+    let moment =
+        |f: &FacetContact| sign(f) * ((f.center - center).cross(&(f.push_n + f.friction_n)) + f.couple_n_m);
     PairResultant {
         first,
         second,

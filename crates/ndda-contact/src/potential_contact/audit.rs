@@ -1,5 +1,6 @@
 //! Audit of the contact potential's last evaluation.
 
+use ndda_mesh::geometry::triangle_area_vector;
 use ndda_mesh::{BlockId, BlockSet, Vec3};
 
 use crate::affine::closing::closing_m_s;
@@ -95,24 +96,46 @@ impl ContactAudit for PotentialContact {
     }
 
     fn add_facets(&self, input: &ContactInput, history: &ContactHistory, facets: &mut Vec<FacetContact>) {
-        for (touch, force) in self.integrals.touching().iter().zip(&self.forces) {
+        let normals = self.normals_of_friction(input.blocks);
+        let tilt_n_m = self.damping.as_deref().map_or(&[][..], ContactDamping::tilt_n_m);
+        for (t, (touch, force)) in self.integrals.touching().iter().zip(&self.forces).enumerate() {
             if !force.touches {
                 continue;
             }
             let sums = self.integrals.sums_of(touch);
+            let own = triangle_area_vector(&input.blocks.triangle_corners(touch.triangle, input.position))
+                .normalize();
+            let of_patch = normals.get(t).filter(|normal| **normal != Vec3::zeros());
+            let twist_n_m = force.couple_n_m * of_patch.unwrap_or(&own);
+            let tilt_n_m = tilt_n_m.get(t).copied().unwrap_or_default();
             facets.push(FacetContact {
                 facet: touch.triangle,
                 target: touch.target,
                 area_m2: sums.area,
-                normal: -force.push.normalize(),
+                normal: own,
                 center: force.center,
                 push_n: sums.pressure * force.push,
                 friction_n: force.friction_n(sums),
+                couple_n_m: twist_n_m + tilt_n_m + force.moment_of_friction(sums, input, touch.triangle),
                 sticks: force.sticks,
             });
         }
         if let Some(joints) = &self.joints {
             bond::add_facets(joints, input, &history.bonds, facets);
         }
+    }
+}
+
+impl PotentialContact {
+    /// Normal of the patch of each touching facet whose friction was searched for, zero for others; none where no friction is.
+    fn normals_of_friction(&self, blocks: &BlockSet) -> Vec<Vec3> {
+        if !self.rubs_faces() {
+            return Vec::new();
+        }
+        let mut normals = vec![Vec3::zeros(); self.integrals.touching().len()];
+        for block in blocks.ids() {
+            self.faces.searched_facets(block).for_each(|(t, normal)| normals[t as usize] = *normal);
+        }
+        normals
     }
 }

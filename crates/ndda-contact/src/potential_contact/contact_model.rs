@@ -13,6 +13,7 @@ use crate::friction::facet::FacetScene;
 use crate::friction::law_table::FrictionLawTable;
 use crate::friction::openings::Moment;
 use crate::friction::patches::PatchScene;
+use crate::friction::twist::couples_of_springs;
 use crate::integration::overlap_pair::ActiveFacet;
 use crate::model::{ContactError, ContactHistory, ContactInput, ContactOutput, ContactReport};
 use crate::pair_stiffness::PairStiffness;
@@ -64,7 +65,7 @@ impl ContactModel for PotentialContact {
         }
         let has_friction = self.rubs_faces() && !input.bodies.is_empty() && !input.without_friction;
         self.damp(input, history);
-        let Self { adjacency, faces, integrals, .. } = self;
+        let (adjacency, faces, integrals) = (&mut self.adjacency, &mut self.faces, &self.integrals);
         let sort = || {
             adjacency.arrange(input.blocks.len(), integrals.touching().iter().map(blocks_of));
             if has_friction {
@@ -78,7 +79,9 @@ impl ContactModel for PotentialContact {
             state: &mut self.state_of_facet,
         };
         let elastic_pa = self.penalty_pa;
-        let facets = FacetScene { input, joints: self.joints.as_ref(), history, elastic_pa };
+        let joints = self.joints.as_ref();
+        let couples = couples_of_springs(joints, input, (integrals, &self.hulls));
+        let facets = FacetScene { input, joints, history, elastic_pa, couples };
         let damping = self.damping.as_deref().filter(|_| !input.bodies.is_empty());
         let left_pa = damping.map_or(&self.penalty_of_facet[..], ContactDamping::left_pa);
         let tilt_n_m = damping.map_or(&[][..], ContactDamping::tilt_n_m);
@@ -104,7 +107,7 @@ impl ContactModel for PotentialContact {
         }
         let base = ScatterScene {
             blocks: input.blocks,
-            position: damping.is_some().then_some(input.position),
+            position: (couples.is_some() || damping.is_some()).then_some(input.position),
             tilt_n_m,
             integrals: &self.integrals,
             adjacency: &self.adjacency,

@@ -9,7 +9,7 @@ use crate::affine::surface::BlockFaces;
 use crate::assembly::overlap_parts::OverlapParts;
 use crate::assembly::tangent::{self, Target};
 use crate::friction::bond_formation;
-use crate::friction::facet::{FacetForce, FacetOutcome, FacetScene};
+use crate::friction::facet::{FacetForce, FacetOutcome, FacetScene, KeptShear, element_of};
 use crate::friction::law_table::FrictionLawTable;
 use crate::friction::openings::{self, Moment};
 use crate::integration::integrals::Integrals;
@@ -143,16 +143,17 @@ impl PotentialContact {
         }
         self.new_facets.clear();
         self.new_state.clear();
-        let scene = FacetScene { input, joints: self.joints.as_ref(), history, elastic_pa: self.penalty_pa };
+        let joints = self.joints.as_ref();
         let len = history.law_state_len as usize;
         for (t, (touch, outcome)) in self.integrals.touching().iter().zip(&self.outcomes).enumerate() {
-            if let Some((shear_n, broken)) = outcome.memory {
+            if let Some(KeptShear { shear_n, twist_n_m, broken }) = outcome.memory {
                 self.new_state.extend_from_slice(&self.state_of_facet[t * len..(t + 1) * len]);
                 self.new_facets.push(FacetMemory {
                     facet: touch.triangle,
                     target: touch.target,
-                    element: scene.element_of(self.integrals.overlaps_of(touch)),
+                    element: element_of(joints, self.integrals.overlaps_of(touch)),
                     shear_n,
+                    twist_n_m,
                     area_m2: self.integrals.sums_of(touch).area,
                     broken,
                 });
@@ -177,7 +178,7 @@ impl PotentialContact {
             if let Err(place) = new_facets.binary_search_by_key(&key(memory), key)
                 && openings::is_kept(joints, input, (memory, state))
             {
-                new_facets.insert(place, FacetMemory { shear_n: [0.0; 2], area_m2: 0.0, ..*memory });
+                new_facets.insert(place, memory.at_rest());
                 new_state.splice(place * len..place * len, state.iter().copied());
             }
         }

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use nalgebra::{Matrix4, Vector4};
+use ndda_mesh::geometry::triangle_area_vector;
 use ndda_mesh::{BlockId, BlockSet, Vec3};
 
 use crate::affine::convex_target::{AffineConvexTarget, ConvexBlocks};
@@ -111,7 +112,7 @@ fn add_block(scene: &ScatterScene, block: BlockId, output: ContactOutput) {
         Some(whole) => nodes.add_affine_target(scene, whole, own, on_block),
     }
     if let Some(position) = scene.position {
-        nodes.add_tilt(scene, block, position);
+        nodes.add_couples(scene, block, position);
     }
 }
 
@@ -224,19 +225,30 @@ impl BlockNodes<'_> {
         }
     }
 
-    /// The moments of damping on facets of this block, and the opposite of those on it.
+    /// The moments of damping and of shear springs on facets of this block, and the opposite of those on it.
     #[inline(never)]
-    fn add_tilt(&mut self, scene: &ScatterScene, block: BlockId, position: &[Vec3]) {
+    fn add_couples(&mut self, scene: &ScatterScene, block: BlockId, position: &[Vec3]) {
         let own = scene.adjacency.of(block).map(|t| (t, true));
         let on_block = scene.adjacency.on(block).iter().map(|&t| (t, false));
         let ScatterScene { blocks, integrals, hulls, .. } = *scene;
         let couples = CoupleScene { blocks, position, integrals, hulls };
-        for (t, is_owner) in own.chain(on_block) {
-            if let Some(tilt_n_m) = scene.tilt_n_m.get(t as usize) {
+        for (t, is_owner) in own.chain(on_block).map(|(t, is_owner)| (t as usize, is_owner)) {
+            let touch = &integrals.touching()[t];
+            let ContactOutput { force, friction_force, .. } = &mut self.output;
+            if let Some(tilt_n_m) = scene.tilt_n_m.get(t) {
                 let tilt_n_m = if is_owner { *tilt_n_m } else { -tilt_n_m };
-                let force = &mut self.output.force;
-                couples.each_force(&integrals.touching()[t as usize], is_owner, &tilt_n_m, |node, f| {
+                couples.each_force(touch, is_owner, &tilt_n_m, |node, f| force[node - self.first] += f);
+            }
+            let twist_n_m = scene.forces[t].couple_n_m;
+            if twist_n_m != 0.0 {
+                let corners = blocks.triangle_corners(touch.triangle, position);
+                let axis = triangle_area_vector(&corners).normalize();
+                let twist_n_m = if is_owner { twist_n_m * axis } else { -twist_n_m * axis };
+                couples.each_force(touch, is_owner, &twist_n_m, |node, f| {
                     force[node - self.first] += f;
+                    if let Some(sum) = friction_force.get_mut(node - self.first) {
+                        *sum += f;
+                    }
                 });
             }
         }

@@ -104,6 +104,7 @@ fn hand_over(
     let basis = facet_basis(&input.blocks.triangle_corners(facet, input.position), &stretch.normal);
     let shear = stretch.shear_n(law);
     let memory = FacetMemory {
+        twist_n_m: 0.0,
         facet,
         target,
         element,
@@ -224,6 +225,7 @@ pub(crate) fn add_facets(
             center: stretch.center,
             push_n: stretch.tension_n(law) * stretch.normal,
             friction_n: stretch.shear_n(law),
+            couple_n_m: Vec3::zeros(),
             sticks: true,
         })
     }));

@@ -1,11 +1,13 @@
 //! One facet: normal force, slip and friction.
 
 use ndda_mesh::geometry::triangle_area_vector;
-use ndda_mesh::{BlockSet, TetId, Vec3};
+use ndda_mesh::{BlockSet, TetId, TriangleId, Vec3};
 
+use crate::assembly::couples::CoupleScene;
 use crate::friction::bonds_of_facet::{self, Key};
 use crate::friction::law::{FacetSlip, FrictionLaw, ShearMemory, capped, facet_basis, length};
 use crate::friction::law_table::{FrictionLawTable, Memory};
+use crate::friction::twist::{Twist, radius2_m2};
 use crate::integration::overlap_pair::{ActiveFacet, FacetMoments, OverlapPair};
 use crate::model::{ContactHistory, ContactInput, FacetMemory, SpringSlip};
 
@@ -24,7 +26,8 @@ pub struct FacetForce {
     pub shear: Vec3,
     /// Whether friction is spread in proportion to |∂φ/∂n| dA, not to the pressure.
     pub shear_by_area: bool,
-    /// Torque of friction about the normal of its patch at the centre of pressure, which `shear` does not have [N m].
+    /// Torque of friction at the centre of pressure about the normal of the facet, or of its patch where friction acts on faces; `shear` does not have it
+    /// [N m].
     pub couple_n_m: f64,
     /// ½ k_s S / ∫ φ dA: what a shift of the facet adds to `shear` [Pa/m].
     pub shear_slope: f64,
@@ -43,10 +46,21 @@ pub struct FacetForce {
 pub(crate) struct FacetOutcome {
     /// Slip and work of the shear spring in the step, where there is one.
     pub spring: Option<SpringSlip>,
-    /// Shear force in the facet's basis [N], and whether cohesion is gone: what is kept where there is friction and contact.
-    pub memory: Option<([f64; 2], bool)>,
+    /// What is kept where there is friction and contact.
+    pub memory: Option<KeptShear>,
     /// Energy that contact has taken up because the facet was moved out since it was clipped last [J].
     pub dilation_work_j: f64,
+}
+
+/// What a facet keeps of its shear for the next step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct KeptShear {
+    /// Shear force in the facet's basis [N].
+    pub shear_n: [f64; 2],
+    /// Torque about its normal [N m].
+    pub twist_n_m: f64,
+    /// Whether cohesion is gone.
+    pub broken: bool,
 }
 
 /// Input of the evaluation of a facet.
@@ -60,6 +74,8 @@ pub(crate) struct FacetScene<'a> {
     pub history: &'a ContactHistory,
     /// Normal penalty of contact without damping [Pa].
     pub elastic_pa: f64,
+    /// Where couples act, for springs that bear torques.
+    pub couples: Option<CoupleScene<'a>>,
 }
 
 /// Place of a facet among those remembered, which are in the order of their keys: mostly about where it is among those that touch now.
@@ -88,6 +104,21 @@ impl FacetForce {
     /// Friction on the facet [N].
     pub(crate) fn friction_n(&self, sums: &FacetMoments) -> Vec3 {
         sums.friction_weight(self.shear_by_area) * self.shear
+    }
+
+    /// Moment of friction about the centre of pressure: of that which is spread by area and acts beside it [N m].
+    pub(crate) fn moment_of_friction(
+        &self,
+        sums: &FacetMoments,
+        input: &ContactInput,
+        triangle: TriangleId,
+    ) -> Vec3 {
+        if !self.shear_by_area {
+            return Vec3::zeros();
+        }
+        let corners = input.blocks.triangle_corners(triangle, input.position);
+        let center = sums.center_of_area(&corners).unwrap_or(self.center);
+        (center - self.center).cross(&self.friction_n(sums))
     }
 }
 
@@ -138,8 +169,8 @@ impl FacetScene<'_> {
         let Some((law, outcome)) = law.filter(|law| !law.acts_on_faces()).zip(outcome) else { return };
         let basis = facet_basis(corners, normal);
         let state = &mut state[..law.state_len()];
-        let key = (touch.triangle, touch.target, self.element_of(hits));
-        let (mut memory, last_area_m2) = self.remembered((key, number), sums, (law, state));
+        let key = (touch.triangle, touch.target, element_of(self.joints, hits));
+        let (mut memory, twist_n_m, last_area_m2) = self.remembered((key, number), sums, (law, state));
         let bonds = &self.history.bonds;
         let bonded = !bonds.is_empty();
         let broken = bonded
@@ -147,7 +178,8 @@ impl FacetScene<'_> {
             .flatten();
         if broken == Some(0.0) {
             // The bond carries the shear.
-            (force.sticks, outcome.memory) = (true, Some((memory.shear_n, false)));
+            let kept = KeptShear { shear_n: memory.shear_n, ..KeptShear::default() };
+            (force.sticks, outcome.memory) = (true, Some(kept));
             return;
         }
         let mut slip = self.slip(touch, (hits, sums), &basis, penalty_pa);
@@ -169,25 +201,58 @@ impl FacetScene<'_> {
             // Force times way, as the push of the step does its work on blocks.
             outcome.dilation_work_j = self.elastic_pa * sums.pressure * (now_m - last_m);
         }
+        let last = (memory.shear_n, twist_n_m);
         law.advance(&slip, &mut memory);
-        let [x, y] = memory.shear_n;
-        force.sticks = length([x, y]) < STICKS * law.capacity_n(&slip, &memory);
+        let capacity_n = law.capacity_n(&slip, &memory);
+        let mut size_n = length(memory.shear_n);
+        let mut left_n = capacity_n;
+        if let Some(twist) = self.twist(law, touch, (&slip, last, capacity_n), (normal, &force.center)) {
+            (force.couple_n_m, memory.shear_n) = twist.bear(memory.shear_n);
+            size_n = twist.size_n(memory.shear_n, force.couple_n_m);
+            left_n = twist.left_n(force.couple_n_m);
+        }
+        force.sticks = size_n < STICKS * capacity_n;
         let shear_n = match dashpot_n {
             None => memory.shear_n,
             Some(force_n) => {
                 // Both together bear no more than the law.
                 let trial = [0, 1].map(|i| memory.shear_n[i] + basis[i].dot(force_n));
-                capped(trial, law.capacity_n(&slip, &memory)).0
+                capped(trial, left_n).0
             }
         };
         force.shear = (basis[0] * shear_n[0] + basis[1] * shear_n[1]) / sums.pressure;
         force.shear_slope = 0.5 * law.shear_stiffness_pa_m() * slip.area_m2 / sums.pressure;
         if force.shear_slope > 0.0 {
             let slip_m = basis[0] * slip.slip_m[0] + basis[1] * slip.slip_m[1];
-            let (capacity_n, shear_n) = (law.capacity_n(&slip, &memory), length([x, y]));
-            outcome.spring = Some(SpringSlip { capacity_n, shear_n, slip_m, slides: !force.sticks });
+            outcome.spring = Some(SpringSlip { capacity_n, shear_n: size_n, slip_m, slides: !force.sticks });
         }
-        outcome.memory = Some((memory.shear_n, memory.broken));
+        let ShearMemory { shear_n, broken, .. } = memory;
+        outcome.memory = Some(KeptShear { shear_n, twist_n_m: force.couple_n_m, broken });
+    }
+
+    /// How a facet on a shear spring turns on its target; none without a spring, and where memory belongs to elements, as in the paper.
+    fn twist(
+        &self,
+        law: &dyn FrictionLaw,
+        touch: &ActiveFacet,
+        (slip, last, capacity_n): (&FacetSlip, ([f64; 2], f64), f64),
+        (normal, center): (&Vec3, &Vec3),
+    ) -> Option<Twist> {
+        let stiffness_pa_m = law.shear_stiffness_pa_m();
+        let couples = self.couples.as_ref().filter(|_| stiffness_pa_m > 0.0 && slip.area_m2 > 0.0)?;
+        let (velocity, mut spin_rad_s) = (self.input.velocity, 0.0);
+        for (is_owner, axis) in [(true, *normal), (false, -normal)] {
+            couples
+                .each_force(touch, is_owner, &axis, |node, force| spin_rad_s += force.dot(&velocity[node]));
+        }
+        Some(Twist {
+            spring_n_m: 0.5 * stiffness_pa_m * slip.mean_area_m2,
+            radius2_m2: radius2_m2(couples, self.input, touch, (slip.area_m2, center)),
+            turn_rad: slip.dt_s * spin_rad_s,
+            last,
+            slip_m: slip.slip_m,
+            capacity_n,
+        })
     }
 
     fn slip(
@@ -209,33 +274,33 @@ impl FacetScene<'_> {
         }
     }
 
-    /// History of the facet on its target, and the area of the last step; none when they did not touch before.
+    /// History of the facet on its target, its torque [N m], and the area of the last step; none when they did not touch before.
     fn remembered<'a>(
         &self,
         (wanted, number): (Key, usize),
         sums: &FacetMoments,
         (law, state): (&dyn FrictionLaw, &'a mut [f64]),
-    ) -> (ShearMemory<'a>, f64) {
+    ) -> (ShearMemory<'a>, f64, f64) {
         match place_of(&self.history.facets, &wanted, number) {
             Some(place) => {
-                let FacetMemory { shear_n, broken, area_m2, .. } = self.history.facets[place];
+                let FacetMemory { shear_n, twist_n_m, broken, area_m2, .. } = self.history.facets[place];
                 state.copy_from_slice(&self.history.state_of(place)[..state.len()]);
-                (ShearMemory { shear_n, broken, state }, area_m2)
+                (ShearMemory { shear_n, broken, state }, twist_n_m, area_m2)
             }
             // Facets that touch from the start count as having touched before.
             None => {
                 law.begin(state);
                 let area_m2 = if self.history.begun { 0.0 } else { sums.area };
-                (ShearMemory { state, ..ShearMemory::default() }, area_m2)
+                (ShearMemory { state, ..ShearMemory::default() }, 0.0, area_m2)
             }
         }
     }
+}
 
-    /// The element that memory belongs to, if it belongs to one: then all hits of a facet are in that.
-    pub(crate) fn element_of(&self, hits: &[OverlapPair]) -> Option<TetId> {
-        let per_element = self.joints.is_some_and(|joints| joints.memory == Memory::Element);
-        per_element.then(|| hits[0].tet)
-    }
+/// The element that memory belongs to, if it belongs to one: then all hits of a facet are in that.
+pub(crate) fn element_of(joints: Option<&FrictionLawTable>, hits: &[OverlapPair]) -> Option<TetId> {
+    let per_element = joints.is_some_and(|joints| joints.memory == Memory::Element);
+    per_element.then(|| hits[0].tet)
 }
 
 /// ∫ φ (v_contactor − v_target) dA: slip velocity at the centre of pressure, times the pressure.

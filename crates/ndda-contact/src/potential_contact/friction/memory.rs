@@ -2,6 +2,13 @@
 
 use crate::model::{ContactError, ContactHistory, FacetMemory};
 
+impl FacetMemory {
+    /// The same of a facet that does not touch.
+    pub(crate) fn at_rest(self) -> Self {
+        Self { shear_n: [0.0; 2], twist_n_m: 0.0, area_m2: 0.0, ..self }
+    }
+}
+
 impl ContactHistory {
     /// Takes up a number of values per facet when contact begins.
     ///

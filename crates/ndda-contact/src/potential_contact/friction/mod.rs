@@ -19,6 +19,7 @@ pub(crate) mod softening_bond;
 pub(crate) mod softening_coulomb;
 pub(crate) mod stretch;
 pub mod testing;
+pub(crate) mod twist;
 pub(crate) mod velocity_coulomb;
 
 pub use facet::FacetForce;

@@ -10,7 +10,7 @@
 use ndda_mesh::geometry::triangle_area_vector;
 use ndda_mesh::{BlockId, Mat3, Vec3};
 
-use crate::friction::facet::{FacetForce, FacetOutcome, STICKS, relative_velocity};
+use crate::friction::facet::{FacetForce, FacetOutcome, KeptShear, STICKS, relative_velocity};
 use crate::friction::law::facet_basis;
 use crate::integration::integrals::Integrals;
 use crate::integration::overlap_pair::ActiveFacet;
@@ -171,7 +171,7 @@ impl ContactDamping {
             let t = dashpot.facet as usize;
             let (touch, force) = (&integrals.touching()[t], &forces[t]);
             let Some(outcome) = outcomes.get(t).filter(|outcome| outcome.spring.is_some()) else { continue };
-            let Some(([x, y], _)) = outcome.memory else { continue };
+            let Some(KeptShear { shear_n: [x, y], .. }) = outcome.memory else { continue };
             let corners = input.blocks.triangle_corners(touch.triangle, input.position);
             let basis = facet_basis(&corners, &dashpot.normal);
             let force_n = integrals.sums_of(touch).pressure * force.shear - (x * basis[0] + y * basis[1]);

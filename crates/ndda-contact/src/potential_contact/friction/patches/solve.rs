@@ -26,8 +26,11 @@ use crate::model::Body;
 const GAMMA: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
 /// Residual at which the friction of one patch is accepted, relative to the change that does not matter.
 const LOCAL_TOLERANCE: f64 = 0.1;
+/// Slip over that without friction that is more than what smoothing leaves of a patch that sticks.
+const SLIPS: f64 = 1e-6;
 /// Least flexibility of a patch in any direction over the largest.
 const REGULAR: f64 = 1e-9;
+
 /// One patch among others.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct CoupledPatch {
@@ -183,8 +186,13 @@ impl CoupledPatch {
     fn friction(&self) -> (Vec3, f64, bool) {
         let force = (1.0 - GAMMA) * self.first + GAMMA * self.force;
         let along = self.axes[0] * force.x + self.axes[1] * force.y;
-        let slides = along.norm() >= (1.0 - 1e-6) * self.surface.most_n;
+        let slides = self.slips() || along.norm() >= (1.0 - 1e-6) * self.surface.most_n;
         (along, force.z * self.surface.radius_m, slides)
+    }
+
+    /// Whether it slips or turns under its friction, which is less than μN then if it turns.
+    fn slips(&self) -> bool {
+        self.curvature.is_some() && self.found_slip.norm() > SLIPS * self.free_slip.norm()
     }
 }
 
