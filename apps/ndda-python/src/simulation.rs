@@ -265,7 +265,7 @@ impl Simulation {
     /// After the last step it is that of `ndda run`, which runs some scenes again: where blocks hit several times, disturb each
     /// other or cannot touch, and where steps are few, this takes as long as the run or twice as long, once. After forces,
     /// velocities or changes of what acts on blocks, and with a law of one's own, steps cannot be taken again: where blocks hit
-    /// several times, the label is then `inaccurate`, since errors of impacts may have grown. Where they are set again and again,
+    /// several times, the label is then `inaccurate`, since errors of impacts may have grown. Where something is set again and again,
     /// at most ten steps apart, it always is: errors of what is set so are not judged, and halve with the step. Before the last
     /// step, it judges the steps that were taken.
     ///
