@@ -45,17 +45,22 @@ impl Law {
 /// A callable that a simulation asks for the shear forces of all facets.
 struct PyLaw {
     law: Law,
+    name: String,
     state_len: usize,
     stiffness_pa_m: f64,
 }
 
-/// Parts of a simulation with a Python law, and the law.
-pub fn parts(law: &Bound<'_, PyAny>, state_len: usize, stiffness_pa_m: f64) -> (Parts, Law) {
+/// Parts of a simulation with a Python law of a name, and the law.
+pub fn parts(
+    law: &Bound<'_, PyAny>,
+    name: String,
+    (state_len, stiffness_pa_m): (usize, f64),
+) -> (Parts, Law) {
     let call = Mutex::new(Some(law.clone().unbind()));
     let law = Law(Arc::new(Held { call, raised: Mutex::default() }));
     let shared = law.clone();
     let make = move || {
-        let law = PyLaw { law: shared.clone(), state_len, stiffness_pa_m };
+        let law = PyLaw { law: shared.clone(), name: name.clone(), state_len, stiffness_pa_m };
         Choices { batch_law: Some(Box::new(law)), ..Choices::default() }
     };
     (Arc::new(make), law)
@@ -64,6 +69,10 @@ pub fn parts(law: &Bound<'_, PyAny>, state_len: usize, stiffness_pa_m: f64) -> (
 impl BatchLaw for PyLaw {
     fn state_len(&self) -> usize {
         self.state_len
+    }
+
+    fn name(&self) -> &str {
+        &self.name
     }
 
     fn shear_stiffness_pa_m(&self) -> f64 {

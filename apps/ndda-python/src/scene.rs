@@ -6,6 +6,7 @@ use ndda::driver::Parts;
 use ndda::{Model, Run};
 use ndda_io::diagnostic::SceneErrors;
 use ndda_io::read::{self, LoadedScene};
+use ndda_io::scene::{Stage, Then, is_unset};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -93,7 +94,7 @@ impl Scene {
         self.folder.clone()
     }
 
-    /// Time step [s].
+    /// Time step [s]; None where the scene leaves it out, and it is chosen when a simulation is built: `Simulation.step_s` has it.
     ///
     /// Examples
     /// --------
@@ -101,11 +102,11 @@ impl Scene {
     /// >>> ndda.parse(ndda.EXAMPLE).step_s
     /// 0.01
     #[getter]
-    fn step_s(&self) -> f64 {
-        self.loaded.scene.time.step_s
+    fn step_s(&self) -> Option<f64> {
+        Some(self.loaded.scene.time.step_s).filter(|step_s| !is_unset(step_s))
     }
 
-    /// Time at which a run of the scene ends [s].
+    /// Time at which a run of the scene ends [s], stages included; None where a stage settles, which takes as long as it takes.
     ///
     /// Examples
     /// --------
@@ -113,11 +114,13 @@ impl Scene {
     /// >>> ndda.parse(ndda.EXAMPLE).end_s
     /// 1.0
     #[getter]
-    fn end_s(&self) -> f64 {
-        self.loaded.scene.time.end_s
+    fn end_s(&self) -> Option<f64> {
+        let scene = &self.loaded.scene;
+        let stages_s: f64 = scene.stages.iter().map(Stage::time_s).sum();
+        (!self.settles_later()).then_some(scene.time.end_s + stages_s)
     }
 
-    /// Steps to the end of the scene.
+    /// Steps to the end of the scene, stages included; None where they are not known before, as `step_s` or `end_s` is not.
     ///
     /// Examples
     /// --------
@@ -125,8 +128,9 @@ impl Scene {
     /// >>> ndda.parse(ndda.EXAMPLE).steps
     /// 100
     #[getter]
-    fn steps(&self) -> u64 {
-        ndda::build::all_steps(&self.loaded.scene)
+    fn steps(&self) -> Option<u64> {
+        let is_known = self.step_s().is_some() && !self.settles_later();
+        is_known.then(|| ndda::build::all_steps(&self.loaded.scene))
     }
 
     /// Builds the scene and returns its warnings, as dictionaries like those of `SceneError.diagnostics`.
@@ -175,11 +179,22 @@ impl Scene {
     }
 
     fn __repr__(&self) -> String {
-        format!("<ndda.Scene {:?}, {} steps of {} s>", self.title(), self.steps(), self.step_s())
+        let length = match (self.steps(), self.step_s(), self.end_s()) {
+            (Some(steps), Some(step_s), _) => format!("{steps} steps of {step_s} s"),
+            (_, Some(step_s), _) => format!("steps of {step_s} s and stages that settle"),
+            (_, None, Some(end_s)) => format!("{end_s} s"),
+            (_, None, None) => "stages that settle".into(),
+        };
+        format!("<ndda.Scene {:?}, {length}>", self.title())
     }
 }
 
 impl Scene {
+    /// Whether a stage brings the scene to rest, which takes as many steps as it takes.
+    fn settles_later(&self) -> bool {
+        self.loaded.scene.stages.iter().any(|stage| matches!(stage.then, Then::Settle { .. }))
+    }
+
     /// Whether the scene has stages of construction.
     pub fn has_stages(&self) -> bool {
         !self.loaded.scene.stages.is_empty()

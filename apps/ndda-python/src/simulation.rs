@@ -32,19 +32,19 @@ pub struct Simulation {
 impl Simulation {
     /// A scene at its start, or where a saved simulation was.
     #[new]
-    #[pyo3(signature = (source, *, threads=None, contacts=false, law=None, law_state=0, law_stiffness=0.0))]
+    #[pyo3(signature = (source, *, threads=None, contacts=false, law=None, law_name="law".into(), law_numbers=(0, 0.0)))]
     fn new(
         py: Python<'_>,
         source: &Bound<'_, PyAny>,
         threads: Option<i64>,
         contacts: bool,
         law: Option<&Bound<'_, PyAny>>,
-        law_state: usize,
-        law_stiffness: f64,
+        law_name: String,
+        law_numbers: (usize, f64),
     ) -> PyResult<Self> {
         // A law is called in a thread of the pool, where Ctrl-C does not break a step off.
         let threads = Threads::new(threads.or(law.map(|_| rayon::current_num_threads() as i64)))?;
-        let parts = law.map(|law| law::parts(law, law_state, law_stiffness));
+        let parts = law.map(|law| law::parts(law, law_name, law_numbers));
         let (parts, law) = parts.unzip();
         let law: Law = law.unwrap_or_default();
         let mut driver = match source.cast::<Scene>() {
@@ -263,9 +263,11 @@ impl Simulation {
     /// The label: `accurate`, `inaccurate`, `sensitive` or `stopped`.
     ///
     /// After the last step it is that of `ndda run`, which runs some scenes again: where blocks hit several times, disturb each
-    /// other or cannot touch, and where steps are few, this takes as long as the run or twice as long, once. After forces, velocities or changes of what acts on blocks, and with a law of
-    /// one's own, steps cannot be taken again: where blocks hit several times, the label is then `inaccurate`, since errors of
-    /// impacts may have grown. Before the last step, it judges the steps that were taken.
+    /// other or cannot touch, and where steps are few, this takes as long as the run or twice as long, once. After forces,
+    /// velocities or changes of what acts on blocks, and with a law of one's own, steps cannot be taken again: where blocks hit
+    /// several times, the label is then `inaccurate`, since errors of impacts may have grown. Where something is set again and again,
+    /// at most ten steps apart, it always is: errors of what is set so are not judged, and halve with the step. Before the last
+    /// step, it judges the steps that were taken.
     ///
     /// Examples
     /// --------

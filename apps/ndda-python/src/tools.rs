@@ -146,7 +146,8 @@ fn _certify(
     let (own, text) = (PathBuf::from(&model.loaded.file), model.loaded.text.clone());
     let is_own = std::fs::read_to_string(&own).is_ok_and(|found| found == text);
     let file = if is_own { own } else { out.join(format!("{name}.ron")) };
-    if !is_own && !OutsideFile::all_of(&model.loaded.scene, &scene.folder).is_empty() {
+    let outside = OutsideFile::all_of(&model.loaded.scene, &scene.folder);
+    if !is_own && outside.iter().any(|file| file.path.is_relative()) {
         let message = "the files that the scene names may not be found, since the scene was changed or made from a text: write scene.text to a file in their folder, and load that";
         return Err(value_error(message));
     }

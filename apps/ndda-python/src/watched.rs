@@ -11,6 +11,7 @@ use ndda::summary::Label;
 use ndda_solver::StepError;
 use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
+use pyo3::types::PyBool;
 
 use crate::threads::{Threads, within};
 
@@ -96,6 +97,9 @@ pub fn slice(driver: &mut Driver, left: &mut u64) -> Result<(), StepError> {
 
 /// A number of steps that a caller gives.
 pub fn number_of_steps(n: &Bound<'_, PyAny>) -> PyResult<u64> {
+    if n.is_instance_of::<PyBool>() {
+        return Err(PyTypeError::new_err(format!("n is {n}: give a whole number")));
+    }
     n.extract().map_err(|_| match n.call_method0("__index__").and_then(|n| n.lt(0)) {
         Ok(true) => PyValueError::new_err(format!("n is {n}: give at least 0")),
         Ok(false) => PyValueError::new_err(format!("n is {n}: give fewer steps")),

@@ -18,6 +18,10 @@ def test_counts_that_are_none_are_refused_by_name(fall: ndda.Simulation) -> None
     for call, words in [
         (lambda: fall.step(-1), "n is -1: give at least 0"),
         (lambda: fall.step(1.5), "n is 1.5: give a whole number"),
+        (lambda: fall.step(True), "n is True: give a whole number"),
+        (lambda: fall.run(every=True), "every is True: give a whole number"),
+        (lambda: ndda.Simulation(ndda.parse(ndda.EXAMPLE), threads=True), "threads is True: give 1 to 1024"),
+        (lambda: ndda.run(ndda.parse(ndda.EXAMPLE), threads=1.5), "threads is 1.5: give 1 to 1024"),
         (lambda: fall.step(10**30), "n is 1000000000000000000000000000000: give fewer steps"),
         (lambda: fall.run(every="a"), "every is 'a': give a whole number"),
         (lambda: fall.run(frames=-1), "frames is -1: give at least 0"),
@@ -140,3 +144,134 @@ def test_contact_acts_on_the_first_block_and_all_of_its_area_slides_without_fric
     # The cube, above, pushes the plate down.
     assert names == ["plate", "cube"] and pair["force"][2] < 0.0
     assert pair["sliding"] == 1.0
+
+
+def test_selections_of_blocks_are_copies_that_nobody_takes_for_the_state(fall: ndda.Simulation) -> None:
+    block = fall.blocks["block"]
+    for name in ("position", "displacement", "velocity", "stress", "center", "mass", "nodes", "elements", "tetrahedra"):
+        with pytest.raises(ValueError, match="read-only"):
+            getattr(block, name)[...] = 1
+
+
+def two_cubes(first: str, second: str, body: str = "Elastic") -> ndda.Simulation:
+    cube = '(name: "{}", material: "rock", body: {}, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), at_m: ({}, 0, 0))'
+    text = ndda.EXAMPLE.replace("(0, 0, -9.81)", "(0, 0, 0)")
+    head = text[: text.index("blocks: [")]
+    return ndda.Simulation(ndda.parse(f"{head}blocks: [{cube.format(first, body, 0)}, {cube.format(second, body, 3)}])"))
+
+
+def test_a_name_that_is_exactly_so_wins_and_only_a_star_is_special() -> None:
+    simulation = two_cubes("c[1]", "c1")
+    simulation.set_force("c[1]", (2600.0, 0.0, 0.0))
+    simulation.run(until=0.1)
+    speeds = [simulation.blocks[i].velocity[:, 0].mean() for i in (0, 1)]
+    assert speeds == pytest.approx([0.1, 0.0], abs=1e-9)
+    star = two_cubes("c*", "c1")
+    assert star.blocks["c*"].names == ["c*"] and star.blocks["*"].names == ["c*", "c1"]
+    with pytest.raises(ValueError, match="is a pattern, too, and stands for 'c1'"):
+        star.hold("c*")
+    for call in (simulation.blocks.__getitem__, simulation.hold, simulation.release):
+        with pytest.raises(KeyError, match="no block is called 'c[?]'; there are .*only [*] stands for anything"):
+            call("c?")
+
+
+def test_blocks_are_held_and_released_by_name_pattern_number_and_list() -> None:
+    simulation = two_cubes("a", "b")
+    for which in ("a", "*", 1, ["a", 1], -1):
+        simulation.hold(which)
+        simulation.release(which)
+        assert not simulation.scene.to_builder().supports
+    simulation.hold("*")
+    with pytest.raises(ValueError, match="the support of '[*]' holds b, too: release '[*]'"):
+        simulation.release("a")
+    simulation.release(["a", "b"])
+    with pytest.raises(KeyError, match="no support has the block 'a'; the scene has none"):
+        simulation.release("a")
+
+
+def test_all_functions_take_a_scene_its_objects_and_its_file_and_name_what_else_they_get(tmp_path: pathlib.Path) -> None:
+    checked = ndda.parse(ndda.EXAMPLE)
+    file = tmp_path / "fall.ron"
+    file.write_text(ndda.EXAMPLE)
+    vary = {"time.step_s": [0.01, 0.02]}
+    functions = [
+        lambda scene: ndda.run(scene)["steps"],
+        lambda scene: ndda.Simulation(scene).steps,
+        lambda scene: len(ndda.study(scene, vary, of="block block.displacement_m")["cases"]),
+        lambda scene: len(ndda.certify(scene)["runs"]),
+        lambda scene: ndda.picture(scene, size=(300, 200)).kind,
+    ]
+    others = [(ndda.EXAMPLE, "text in RON: give ndda.parse"), ({"title": "x"}, "a dictionary: give ndda.parse"), (3, "3 is not a scene")]
+    for function in [*functions, ndda.safety, ndda.stereonet]:
+        for other, words in others:
+            with pytest.raises(TypeError, match=words):
+                function(other)
+    for function in functions:
+        first, *rest = [function(scene) for scene in (checked, checked.to_builder(), file, str(file))]
+        assert all(other == first for other in rest)
+    for scene in (checked, checked.to_builder(), file):
+        with pytest.raises(ValueError, match="no friction"):
+            ndda.safety(scene)
+
+
+def test_options_that_the_command_refuses_are_refused(tmp_path: pathlib.Path) -> None:
+    scene = ndda.parse(ndda.EXAMPLE)
+    for name in ("mesh", "penalty"):
+        with pytest.raises(ValueError, match=f"{name} is 3: give at most 2"):
+            ndda.certify(scene, **{name: 3})
+    with pytest.raises(ValueError, match="towards works only with by=.gravity.: add that, or leave towards out"):
+        ndda.safety(scene, towards=(1, 0, 0))
+    with pytest.raises(TypeError, match="of is 3: give a text or a list of texts"):
+        ndda.certify(scene, of=3)
+    found = ndda.study(scene, {"time.step_s": [0.01, 0.02]}, of="label")
+    assert [case["label"] for case in found["cases"]] == ["accurate", "accurate"]
+
+
+def test_numbers_of_a_scene_that_are_known_only_later_are_none() -> None:
+    text = ndda.EXAMPLE
+    scene = ndda.parse(text.replace("step_s: 0.01, ", ""))
+    assert (scene.step_s, scene.steps, scene.end_s) == (None, None, 1.0)
+    assert repr(scene) == '<ndda.Scene "A block falls for a second", 1 s>'
+    simulation = ndda.Simulation(scene)
+    assert simulation.scene.step_s == simulation.step_s and simulation.scene.steps == simulation.steps
+    staged = text.replace("contact: Off", 'contact: Off, stages: [(name: "later", then: Run(0.5))]')
+    scene = ndda.parse(staged)
+    assert (scene.step_s, scene.steps, scene.end_s) == (0.01, 150, 1.5)
+    assert ndda.run(scene)["steps"] == 150
+    with pytest.raises(ValueError, match="the scene has stages, which `ndda.run` follows"):
+        ndda.Simulation(scene)
+    held = text.replace("body: Rigid, ", "").rstrip()[:-1] + 'supports: [(block: "block", on: All, hold: Fixed)],)'
+    scene = ndda.parse(held.replace("contact: Off", 'contact: Off, stages: [(name: "later", then: Settle())]'))
+    assert (scene.step_s, scene.steps, scene.end_s) == (0.01, None, None)
+
+
+def test_after_a_restore_frames_are_those_of_the_present_run(fall: ndda.Simulation) -> None:
+    kept = fall.snapshot()
+    fall.run(frames=4)
+    fall.restore(kept)
+    fall.set_force("block", (0, 0, 2 * 2600 * 9.81))
+    fall.run(frames=4)
+    times = [time for time, _ in fall._frames]
+    assert times == pytest.approx([0, 0.25, 0.5, 0.75, 1.0]) and fall.show().frames == 5
+    meshio = pytest.importorskip("meshio")
+    heights = [meshio.read(file).points[:, 2].min() for _, file in fall._frames]
+    assert heights == pytest.approx([0.5 * 9.81 * time**2 for time in times], abs=1e-4)
+
+
+def test_a_frame_is_a_whole_number_and_a_time_a_float(tmp_path: pathlib.Path) -> None:
+    ndda.run(ndda.parse(ndda.EXAMPLE, **{"output.frames": 4}), tmp_path / "out")
+    results = ndda.read(tmp_path / "out")
+    names = [results._file(number).name for number in range(5)]
+    assert len(set(names)) == 5
+    for frame, number in [(np.int64(2), 2), (-1, 4), (np.int8(-5), 0), (0.3, 1), (np.float32(1.0), 4), (0.0, 0)]:
+        assert results._file(frame).name == names[number]
+    choices = "the run has frames 0 to 4, or -5 to -1 from the end, at 0 to 1 s"
+    for frame in (5, -6, np.int64(5)):
+        with pytest.raises(IndexError, match=choices):
+            results._file(frame)
+    for frame in (np.nan, -3.0, 1.1, np.inf):
+        with pytest.raises(ValueError, match=choices):
+            results._file(frame)
+    for frame in (True, "last", None, 1j):
+        with pytest.raises(TypeError, match=choices):
+            results._file(frame)

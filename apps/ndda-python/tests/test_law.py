@@ -128,3 +128,19 @@ def test_numbers_of_a_law_that_cannot_be_are_refused(name: str, value: object, w
     setattr(law, name, value)
     with pytest.raises((TypeError, ValueError), match=words):
         ndda.Simulation(ndda.load(RAMP), law=law)
+
+
+def test_a_simulation_with_a_law_goes_on_only_with_one(tmp_path: pathlib.Path) -> None:
+    scene = ndda.load(RAMP, **{"time.end_s": 0.01, "reference": None})
+    simulation = ndda.Simulation(scene, law=Spring(35.0, 2e8))
+    simulation.step(10)
+    simulation.save(tmp_path / "state")
+    words = "the friction law `Spring`, which is not in the file: resume with it, in Python `ndda.resume"
+    with pytest.raises(ValueError, match=words):
+        ndda.resume(tmp_path / "state")
+    later = ndda.resume(tmp_path / "state", law=Spring(35.0, 2e8))
+    assert not later.is_reproducible and later.state_crc32 == simulation.state_crc32
+    plain = ndda.Simulation(scene)
+    with pytest.raises(ValueError, match="a simulation with the friction law `Spring`, and this one was begun without it"):
+        plain.restore(simulation.snapshot())
+    assert plain.step_count == 0 and plain.is_reproducible

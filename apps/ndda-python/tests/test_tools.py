@@ -219,3 +219,42 @@ def test_what_is_imported_later_is_there() -> None:
         _ = ndda.nothing
     code = "import sys, ndda; sys.exit('numpy' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], env=os.environ).returncode == 0
+
+
+EARTHQUAKE = SCENES / "works" / "slope_earthquake.ron"
+
+
+def named_files(folder: pathlib.Path) -> ndda.Scene:
+    """A scene whose material is in a file of another folder."""
+    folder.mkdir()
+    (folder / "rock.ron").write_text('[(name: "rock", density_kg_m3: 2600, young_pa: 1e9, poisson: 0.25)]')
+    text = ndda.EXAMPLE
+    start, end = text.index("materials: ["), text.index("blocks: [")
+    return ndda.parse(f'{text[:start]}include: ["rock.ron"],\n    {text[end:]}', folder=folder)
+
+
+def test_tools_find_the_files_of_a_scene_that_is_a_text_or_was_changed(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scene = named_files(tmp_path / "scenes")
+    # The working folder is another one.
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "scenes" / "fall.ron").write_text(scene.text)
+    changed = ndda.load(pathlib.Path("scenes") / "fall.ron", **{"time.end_s": 0.5})
+    for one, depth in ((scene, 4.905), (changed, 4.905 / 4)):
+        found = ndda.study(one, {"time.step_s": [0.01, 0.02]}, of="block block.displacement_m")
+        assert [case["values"][0] for case in found["cases"]] == pytest.approx([depth, depth], rel=1e-6)
+        assert ndda.picture(one, size=(300, 200)).kind == "png"
+        assert ndda.certify(one)["schema"].startswith("ndda.certificate")
+    assert ndda.Simulation(changed).scene.folder == changed.folder
+
+
+def test_an_earthquake_of_a_changed_scene_is_found() -> None:
+    scene = ndda.load(EARTHQUAKE, **{"time.end_s": 0.001})
+    found = ndda.study(scene, {"contact.friction.friction_deg": [30.0]}, of="kinetic_j", second_runs="never")
+    assert found["cases"][0].get("reason") is None and ndda.picture(scene, size=(300, 200)).kind == "png"
+
+
+def test_a_study_whose_cases_all_fail_gives_the_first_reason() -> None:
+    with pytest.raises(ValueError, match="all cases of the study have failed, 2 of 2; the first, .*density"):
+        ndda.study(fall(), {"materials.0.density_kg_m3": [-1.0, -2.0]}, of="block block.displacement_m")

@@ -61,6 +61,8 @@ pub struct Driver {
     /// Text of the scene as it was at the start, before any [`change`](Driver::change).
     origin: Arc<str>,
     parts: Option<Parts>,
+    /// Parts that the scene does not name, in words.
+    own: Option<String>,
 }
 
 /// Parts of a program's own, made anew whenever a simulation is built.
@@ -75,6 +77,8 @@ pub struct DriverSnapshot {
     snapshot: Snapshot,
     stopped: Option<StepError>,
     disturbed: Option<Disturbed>,
+    /// Parts that the scene does not name, in words.
+    own: Option<String>,
 }
 
 /// Why a snapshot cannot be restored.
@@ -83,6 +87,11 @@ pub enum DriverRestoreError {
     /// The snapshot is of another scene.
     #[error("the snapshot is of another scene: restore it in a simulation of the scene that it was taken of")]
     OtherScene,
+    /// It is of a simulation with other parts than the scene's.
+    #[error(
+        "the snapshot is of a simulation with {0}, and this one was begun without it: restore it in a simulation that has it"
+    )]
+    Own(String),
     /// Meshes that the scene names have changed.
     #[error(transparent)]
     OtherProblem(#[from] RestoreError),
@@ -143,7 +152,8 @@ impl Driver {
         let history = Vec::with_capacity(rows.min(steps).min(ORDINARY_ROWS) as usize + 2);
         let (stopped, facets, watches_contacts) = (None, Vec::new(), false);
         let course = Course::new(built, disturbed);
-        Self { model, steps, rows, stopped, facets, history, watches_contacts, course, origin, parts }
+        let own = choices(parts.as_ref()).own();
+        Self { model, steps, rows, stopped, facets, history, watches_contacts, course, origin, parts, own }
     }
 
     /// Builds a text of the scene with the parts that the driver was begun with.
@@ -227,7 +237,8 @@ impl Driver {
     pub fn snapshot(&self) -> DriverSnapshot {
         let (origin, scene) = (self.origin.clone(), self.model.loaded.text.clone());
         let (snapshot, stopped) = (self.model.simulation.snapshot(), self.stopped.clone());
-        DriverSnapshot { origin, scene, snapshot, stopped, disturbed: self.course.disturbed }
+        let (disturbed, own) = (self.course.disturbed, self.own.clone());
+        DriverSnapshot { origin, scene, snapshot, stopped, disturbed, own }
     }
 
     /// Goes on from a snapshot of the same scene, bit for bit.
@@ -237,6 +248,9 @@ impl Driver {
     pub fn restore(&mut self, snapshot: &DriverSnapshot) -> Result<(), DriverRestoreError> {
         if snapshot.origin != self.origin {
             return Err(DriverRestoreError::OtherScene);
+        }
+        if let (Some(own), None) = (&snapshot.own, &self.own) {
+            return Err(DriverRestoreError::Own(own.clone()));
         }
         if snapshot.scene == self.model.loaded.text {
             self.model.simulation.restore(snapshot.snapshot.clone())?;
@@ -333,6 +347,32 @@ mod tests {
         let fall = Driver::new(Model::from_text(EXAMPLE.1).unwrap()).unwrap();
         let mut driver = Driver::new(bounce()).unwrap();
         assert!(matches!(driver.restore(&fall.snapshot()), Err(DriverRestoreError::OtherScene)));
+    }
+
+    #[test]
+    fn a_simulation_with_a_law_of_its_own_goes_on_only_with_one() {
+        use crate::build::Choices;
+        let slippery = || {
+            let law = ndda_contact::Coulomb::new(5.0, 1e10);
+            Choices { friction: Some(Box::new(law)), ..Choices::default() }
+        };
+        let parts: Parts = Arc::new(slippery);
+        let model = || {
+            let loaded = bounce().loaded;
+            Model::with(loaded, &bounce().folder, slippery()).unwrap()
+        };
+        let begin = || Driver::with_parts(model(), Some(parts.clone()), &mut |_| ControlFlow::Continue(()));
+        let mut driver = begin().unwrap();
+        driver.step(10).unwrap();
+        let (folder, mut plain) = (tempfile::tempdir().unwrap(), Driver::new(bounce()).unwrap());
+        let file = folder.path().join("state");
+        driver.save(&file).unwrap();
+        let refused = plain.restore(&driver.snapshot());
+        assert!(matches!(refused, Err(DriverRestoreError::Own(_))), "{refused:?}");
+        assert_eq!(plain.simulation().state().step, 0);
+        assert!(matches!(Driver::load(&file, None), Err(LoadError::Own { .. })));
+        Driver::load(&file, Some(parts.clone())).unwrap().restore(&driver.snapshot()).unwrap();
+        begin().unwrap().restore(&driver.snapshot()).unwrap();
     }
 
     #[test]

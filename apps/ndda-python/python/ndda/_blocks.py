@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, TypeVar
 
 if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
-    from ndda._driven import Which
+    from ndda._driven import Vector, Which
     from ndda._simulation import Simulation
+
+    _Array = TypeVar("_Array", bound=npt.NDArray[Any])
+
+
+def _read_only(array: _Array) -> _Array:
+    """The array, so that nobody takes a copy for the state."""
+    array.flags.writeable = False
+    return array
 
 
 class Blocks:
@@ -53,7 +61,7 @@ class Blocks:
 
 
 class BlockSelection:
-    """Blocks that a pattern of names or a list names.
+    """Blocks that a pattern of names or a list names; arrays are read-only copies.
 
     Examples
     --------
@@ -93,7 +101,7 @@ class BlockSelection:
         >>> simulation.blocks["b*"].nodes.tolist()
         [0, 1, 2, 3, 4, 5, 6, 7]
         """
-        return self._simulation.nodes(self._which)
+        return _read_only(self._simulation.nodes(self._which))
 
     @property
     def position(self) -> npt.NDArray[np.float64]:
@@ -106,7 +114,7 @@ class BlockSelection:
         >>> simulation.blocks["b*"].position.shape
         (8, 3)
         """
-        return self._simulation.position[self.nodes]
+        return _read_only(self._simulation.position[self.nodes])
 
     @property
     def displacement(self) -> npt.NDArray[np.float64]:
@@ -119,7 +127,7 @@ class BlockSelection:
         >>> simulation.blocks["b*"].displacement.shape
         (8, 3)
         """
-        return self._simulation.displacement[self.nodes]
+        return _read_only(self._simulation.displacement[self.nodes])
 
     @property
     def velocity(self) -> npt.NDArray[np.float64]:
@@ -132,7 +140,7 @@ class BlockSelection:
         >>> simulation.blocks["b*"].velocity.shape
         (8, 3)
         """
-        return self._simulation.velocity[self.nodes]
+        return _read_only(self._simulation.velocity[self.nodes])
 
     @property
     def elements(self) -> npt.NDArray[np.int64]:
@@ -148,7 +156,7 @@ class BlockSelection:
         import numpy as np
 
         starts = self._simulation._tet_starts()
-        return np.concatenate([np.arange(starts[i], starts[i + 1], dtype=np.int64) for i in self._indices])
+        return _read_only(np.concatenate([np.arange(starts[i], starts[i + 1], dtype=np.int64) for i in self._indices]))
 
     @property
     def tetrahedra(self) -> npt.NDArray[np.int64]:
@@ -161,7 +169,7 @@ class BlockSelection:
         >>> simulation.position[simulation.blocks["b*"].tetrahedra].shape
         (6, 4, 3)
         """
-        return self._simulation.tetrahedra[self.elements]
+        return _read_only(self._simulation.tetrahedra[self.elements])
 
     @property
     def stress(self) -> npt.NDArray[np.float64]:
@@ -174,7 +182,7 @@ class BlockSelection:
         >>> simulation.blocks["b*"].stress.shape
         (6, 6)
         """
-        return self._simulation.stress[self.elements]
+        return _read_only(self._simulation.stress[self.elements])
 
     @property
     def center(self) -> npt.NDArray[np.float64]:
@@ -187,7 +195,7 @@ class BlockSelection:
         >>> simulation.blocks["b*"].center.tolist()
         [[0.5, 0.5, 0.5]]
         """
-        return self._simulation._centers()[self._indices]
+        return _read_only(self._simulation._centers()[self._indices])
 
     @property
     def mass(self) -> npt.NDArray[np.float64]:
@@ -200,9 +208,9 @@ class BlockSelection:
         >>> simulation.blocks["b*"].mass.round(6).tolist()
         [2600.0]
         """
-        return self._simulation._masses()[self._indices]
+        return _read_only(self._simulation._masses()[self._indices])
 
-    def set_force(self, force: Sequence[float]) -> None:
+    def set_force(self, force: Vector) -> None:
         """Let a force [N] act on each from now on, as `Simulation.set_force`.
 
         Examples
@@ -213,7 +221,7 @@ class BlockSelection:
         """
         self._simulation.set_force(self._which, force)
 
-    def set_velocity(self, velocity: Sequence[float], spin: Sequence[float] = (0.0, 0.0, 0.0)) -> None:
+    def set_velocity(self, velocity: Vector, spin: Vector = (0.0, 0.0, 0.0)) -> None:
         """Give each a velocity [m/s] and a spin [rad/s] now, as `Simulation.set_velocity`.
 
         Examples

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import operator
+import re
 from collections.abc import Sequence
-from fnmatch import fnmatchcase
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ndda._arrays import Arrays
 from ndda._core import SceneError
@@ -17,8 +17,14 @@ if TYPE_CHECKING:
 
     from ndda.builders import HoldChoice, RegionChoice
 
+    Vector = Sequence[float] | npt.NDArray[Any]
+
 Which = str | int | Sequence[str | int]
-"""Blocks: a name, a pattern such as ``"cube_*"``, a number, or a list of them."""
+"""Blocks: a name, a pattern such as ``"cube_*"``, a number, or a list of them.
+
+As in scenes, ``*`` stands for anything in a pattern, and no other character is special. A block that has the pattern for its name is
+meant alone.
+"""
 
 
 _INSTEAD = "make it Affine or Elastic from the start to hold it, or stop it by set_velocity and balance its loads by set_force"
@@ -60,10 +66,11 @@ class Driven(Arrays):
         found = self._blocks(pattern)
         return np.concatenate([np.arange(starts[i], starts[i + 1], dtype=np.int64) for i in found])
 
-    def set_force(self, pattern: Which, force: Sequence[float]) -> None:
+    def set_force(self, pattern: Which, force: Vector) -> None:
         """Let a force act at the centre of mass of blocks from now on.
 
-        Its impulse and its work are in the balances of momentum and energy.
+        Its impulse and its work are in the balances of momentum and energy. Where it is set in steps that follow each other, its
+        errors halve with the step and are not judged: `label` is then ``"inaccurate"``.
 
         Parameters
         ----------
@@ -92,11 +99,12 @@ class Driven(Arrays):
             self._set_force(block, force)
 
     def set_velocity(
-        self, pattern: Which, velocity: Sequence[float], spin: Sequence[float] = (0.0, 0.0, 0.0)
+        self, pattern: Which, velocity: Vector, spin: Vector = (0.0, 0.0, 0.0)
     ) -> None:
         """Give blocks a velocity now, as a blow would.
 
-        The impulse and the change of kinetic energy are in the balances of momentum and energy.
+        The impulse and the change of kinetic energy are in the balances of momentum and energy. Where it is set in steps that
+        follow each other, its errors halve with the step and are not judged: `label` is then ``"inaccurate"``.
 
         Parameters
         ----------
@@ -156,15 +164,15 @@ class Driven(Arrays):
         """
         self._change(overrides_of(overrides))
 
-    def hold(self, pattern: str, on: RegionChoice = "All", hold: HoldChoice = "Fixed") -> None:
+    def hold(self, pattern: Which, on: RegionChoice = "All", hold: HoldChoice = "Fixed") -> None:
         """Hold blocks where they are from now on.
 
         Nodes that move stop at once: their momentum and kinetic energy are in the balances, as impulse and work of loads.
 
         Parameters
         ----------
-        pattern : str
-            Name of a block, or a pattern such as ``"prop_*"``.
+        pattern : str, int, or a list of them
+            Name of a block, a pattern such as ``"prop_*"``, or its number. Blocks of a pattern that have no such part stay as they are.
         on : str or Region.Plane or Region.Set
             Which part of them, such as ``ndda.builders.Region.Set("z_min")``.
         hold : str or Hold.Direction
@@ -172,8 +180,10 @@ class Driven(Arrays):
 
         Raises
         ------
+        KeyError, IndexError
+            No block has such a name or number.
         SceneError
-            No block has such a name, or it has no such part.
+            It has no such part.
         ValueError
             A block is rigid, which nothing can hold, the support would count from where the block was at the start, the block
             has turned too far, or the integrator remembers accelerations.
@@ -192,26 +202,28 @@ class Driven(Arrays):
 
         supports = self.scene.to_builder().supports or []
         try:
-            self.change(supports=[*supports, Support(block=pattern, on=on, hold=hold)])
+            held = [Support(block=block, on=on, hold=hold) for block in self._as_in_scenes(pattern)]
+            self.change(supports=[*supports, *held])
         except SceneError as error:
             if "rigid block cannot be held" in str(error):
                 raise ValueError(f"{pattern!r} names a rigid block, which cannot be held: {_INSTEAD}") from error
             raise
 
-    def release(self, pattern: str) -> None:
+    def release(self, pattern: Which) -> None:
         """Take away the supports of blocks.
 
         Parameters
         ----------
-        pattern : str
-            `block` of the supports in the scene, or a pattern such as ``"prop_*"``.
+        pattern : str, int, or a list of them
+            Name of a block, a pattern such as ``"prop_*"``, or its number.
 
         Raises
         ------
-        KeyError
-            No support has such a block.
+        KeyError, IndexError
+            No block has such a name or number, or no support holds one.
         ValueError
-            The integrator remembers accelerations, so that supports cannot change.
+            A support holds other blocks, too, so that they are to be released together; or the integrator remembers
+            accelerations, so that supports cannot change.
 
         Examples
         --------
@@ -226,7 +238,14 @@ class Driven(Arrays):
         -1.22625
         """
         supports = self.scene.to_builder().supports or []
-        kept = [one for one in supports if not (one.block == pattern or fnmatchcase(one.block, pattern))]
+        freed, kept = set(self._blocks(pattern)), []
+        for one in supports:
+            held = set(self._blocks(one.block))
+            if held - freed and held & freed:
+                other = self.block_names[min(held - freed)]
+                raise ValueError(f"the support of {one.block!r} holds {other}, too: release {one.block!r}")
+            if held - freed:
+                kept.append(one)
         if len(kept) == len(supports):
             there = f"there are supports of {_some([one.block for one in supports])}" if supports else "the scene has none"
             raise KeyError(f"no support has the block {pattern!r}; {there}")
@@ -235,9 +254,12 @@ class Driven(Arrays):
     def _blocks(self, which: Which) -> list[int]:
         names = self.block_names
         if isinstance(which, str):
-            found = [i for i, name in enumerate(names) if name == which or fnmatchcase(name, which)]
+            if which in names:
+                return [names.index(which)]
+            found = [i for i, name in enumerate(names) if _matches(which, name)]
             if not found:
-                raise KeyError(f"no block is called {which!r}; there are {_some(names)}")
+                special = "; only * stands for anything" if re.search(r"[?\[]", which) else ""
+                raise KeyError(f"no block is called {which!r}; there are {_some(names)}{special}")
             return found
         if isinstance(which, (int, bytes)) or not hasattr(which, "__iter__"):
             return [_numbered(which, len(names))]
@@ -246,6 +268,21 @@ class Driven(Arrays):
         if not several:
             raise KeyError(f"the list of blocks is empty; there are {_some(names)}")
         return several
+
+    def _as_in_scenes(self, which: Which) -> list[str]:
+        """Blocks as a scene names them: a name or a pattern as it is, the names of others."""
+        names, found = self.block_names, self._blocks(which)
+        named = [which] if isinstance(which, str) else [names[i] for i in found]
+        for one in set(named).intersection(names):
+            other = next((name for name in names if "*" in one and name != one and _matches(one, name)), None)
+            if other is not None:
+                raise ValueError(f"in a support, {one!r} is a pattern, too, and stands for {other!r}: rename the block")
+        return named
+
+
+def _matches(pattern: str, name: str) -> bool:
+    """Whether a name is that of a pattern, as a scene reads it."""
+    return re.fullmatch(".*".join(map(re.escape, pattern.split("*"))), name, re.DOTALL) is not None
 
 
 def _numbered(which: object, count: int) -> int:

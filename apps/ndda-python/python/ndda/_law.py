@@ -90,8 +90,8 @@ def adapted_law(law: Law) -> dict[str, Any]:
 
     return {
         "law": call,
-        "law_state": _state_len(law),
-        "law_stiffness": _stiffness_pa_m(law),
+        "law_name": str(getattr(law, "__name__", type(law).__name__)),
+        "law_numbers": (_state_len(law), _stiffness_pa_m(law)),
     }
 
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import operator
 import os
+from numbers import Integral, Real
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -117,8 +119,21 @@ class Results:
 
     def _file(self, frame: int | float) -> Path:
         frames = self._frames()
-        if isinstance(frame, int):
-            return frames[frame][1]
+        if not frames:
+            raise FileNotFoundError(f"{self.folder} has no frame yet")
+        count, first_s, last_s = len(frames), frames[0][0], frames[-1][0]
+        choices = f"the run has frames 0 to {count - 1}, or -{count} to -1 from the end, at {first_s:g} to {last_s:g} s"
+        if isinstance(frame, bool) or not isinstance(frame, Real):
+            raise TypeError(f"frame is {frame!r}: give a number, whole for a frame, or a time [s] as a float; {choices}")
+        if isinstance(frame, Integral):
+            number = operator.index(frame)
+            if not -count <= number < count:
+                raise IndexError(f"frame is {number}: {choices}; a time is a float, such as {number}.0")
+            return frames[number][1]
+        # Times of frames are rounded where they are written.
+        margin_s = 1e-6 * (last_s - first_s)
+        if not first_s - margin_s <= frame <= last_s + margin_s:
+            raise ValueError(f"frame is {frame} s: {choices}")
         return min(frames, key=lambda one: abs(one[0] - frame))[1]
 
     def mesh(self, frame: int | float = -1) -> meshio.Mesh:
@@ -127,7 +142,7 @@ class Results:
         Parameters
         ----------
         frame : int or float
-            Number of the frame, from the end if negative; or the nearest to a time [s].
+            A whole number is that of the frame, from the end if negative; a float is a time [s], and the nearest frame is read.
 
         Returns
         -------
@@ -137,6 +152,8 @@ class Results:
         ------
         FileNotFoundError
             The run wrote no frames.
+        IndexError, ValueError
+            It has no such frame, or has none at such a time.
 
         Examples
         --------
@@ -153,7 +170,7 @@ class Results:
         Parameters
         ----------
         frame : int or float
-            Number of the frame, from the end if negative; or the nearest to a time [s].
+            A whole number is that of the frame, from the end if negative; a float is a time [s], and the nearest frame is read.
 
         Returns
         -------
@@ -163,6 +180,8 @@ class Results:
         ------
         FileNotFoundError
             The run wrote no frames.
+        IndexError, ValueError
+            It has no such frame, or has none at such a time.
 
         Examples
         --------

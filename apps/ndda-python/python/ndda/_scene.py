@@ -7,10 +7,13 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from ndda import _core
+from ndda._checks import thread_count
 from ndda._core import Scene
 
 if TYPE_CHECKING:
     from ndda.builders import Scene as SceneBuilder
+
+    SceneLike = Scene | SceneBuilder | str | os.PathLike[str]
 
 EXAMPLE = """Scene(
     title: "A block falls for a second",
@@ -162,7 +165,7 @@ def parse(
 
 
 def run(
-    scene: Scene,
+    scene: SceneLike,
     out: str | os.PathLike[str] | None = None,
     *,
     force: bool = False,
@@ -172,7 +175,7 @@ def run(
 
     Parameters
     ----------
-    scene : Scene
+    scene : Scene, builders.Scene or path
     out : path, optional
         Folder for history, fields and summary, as `ndda run` writes them; no files without it. `read` reads it.
     force : bool
@@ -202,6 +205,7 @@ def run(
     """
     import json
 
+    scene, threads = scene_of(scene), thread_count(threads)
     if out is None:
         text = scene._run(threads)
     else:
@@ -210,9 +214,29 @@ def run(
     return summary
 
 
-def scene_of(scene: Scene | str | os.PathLike[str]) -> Scene:
-    """The scene itself, or the one in a file."""
-    return scene if isinstance(scene, Scene) else load(scene)
+def scene_of(scene: SceneLike) -> Scene:
+    """The scene itself, that of objects, or the one in a file."""
+    if isinstance(scene, Scene):
+        return scene
+    if isinstance(scene, (str, os.PathLike)):
+        return load(path_of(scene))
+    if isinstance(scene, Mapping):
+        raise TypeError("the scene is a dictionary: give ndda.parse(dictionary)")
+    from ndda.builders import Scene as SceneBuilder
+
+    if isinstance(scene, SceneBuilder):
+        return parse(scene)
+    raise TypeError(
+        f"{scene!r} is not a scene: give one of ndda.load or ndda.parse, a builders.Scene, or the path of a file"
+    )
+
+
+def path_of(given: str | os.PathLike[str]) -> str:
+    """The path of a file, which a text of a scene is not."""
+    path = os.fspath(given)
+    if "\n" in path or path.lstrip().startswith(("Scene(", "(")):
+        raise TypeError("the scene is a text in RON: give ndda.parse(text); a string names a file")
+    return path
 
 
 def name_of(scene: Scene) -> str:

@@ -4,22 +4,23 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 from ndda import _core
 from ndda._arrays import _HISTORY
 from ndda._blocks import Blocks
-from ndda._checks import MOST_STEPS, finite, whole
+from ndda._checks import MOST_STEPS, finite, thread_count, whole
 from ndda._driven import Driven
 from ndda._progress import Progress
-from ndda._scene import parse
+from ndda._scene import scene_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from ndda._law import Law
+    from ndda._scene import SceneLike
     from ndda._view import Page
-    from ndda.builders import Scene as SceneBuilder
 
 
 class Simulation(Driven):
@@ -31,8 +32,8 @@ class Simulation(Driven):
 
     Parameters
     ----------
-    scene : Scene or builders.Scene
-        What to simulate. A scene that is to settle first is settled here.
+    scene : Scene, builders.Scene or path
+        What to simulate. A scene that is to settle first is settled here; one with stages is refused.
     threads : int, optional
         Threads of its own; all processors of the process otherwise. Results have the same bits on any number.
     contacts : bool
@@ -47,6 +48,8 @@ class Simulation(Driven):
         The scene cannot be built.
     StopError
         It does not settle.
+    ValueError
+        It has stages, which `run` follows: leave them out, and use `change` between steps.
 
     Examples
     --------
@@ -64,15 +67,14 @@ class Simulation(Driven):
 
     def __new__(
         cls,
-        scene: _core.Scene | SceneBuilder,
+        scene: SceneLike,
         *,
         threads: int | None = None,
         contacts: bool = False,
         law: Law | None = None,
     ) -> Simulation:
         """Build the scene and take it to its start."""
-        checked = scene if isinstance(scene, _core.Scene) else parse(scene)
-        return cls._made(checked, threads, contacts, law)
+        return cls._made(scene_of(scene), threads, contacts, law)
 
     @classmethod
     def _made(
@@ -83,7 +85,7 @@ class Simulation(Driven):
             from ndda._law import adapted_law
 
             adapted = adapted_law(law)
-        self = super().__new__(cls, source, threads=threads, contacts=contacts, **adapted)
+        self = super().__new__(cls, source, threads=thread_count(threads), contacts=contacts, **adapted)
         self._begin(contacts, law)
         return self
 
@@ -204,6 +206,40 @@ class Simulation(Driven):
         """
         return self._law is None
 
+    def restore(self, snapshot: _core.Snapshot) -> None:
+        """Go on from a snapshot of the same scene, bit for bit.
+
+        Frames and rows of the history from after it are dropped.
+
+        Parameters
+        ----------
+        snapshot : Snapshot
+            Of this simulation, or of another one of the same scene.
+
+        Raises
+        ------
+        ValueError
+            It is of another scene, or of a simulation with a law, which this one lacks.
+
+        Examples
+        --------
+        >>> import ndda
+        >>> simulation = Simulation(ndda.parse(ndda.EXAMPLE))
+        >>> kept = simulation.snapshot()
+        >>> simulation.step(10)
+        >>> simulation.restore(kept)
+        >>> simulation.step_count
+        0
+        """
+        super().restore(snapshot)
+        last_s = self._frames[-1][0] if self._frames else 0.0
+        # A frame of the same time may be of other velocities: that of the present state is kept when it is next asked for.
+        self._frames = [one for one in self._frames if one[0] < self.time_s]
+        if last_s >= self.time_s:
+            # What has stopped has no frame.
+            with suppress(_core.StopError):
+                self.keep_frame()
+
     def keep_frame(self) -> None:
         """Keep the present state for `show`, with the fields that the scene's `output` names.
 
@@ -312,7 +348,7 @@ def resume(
     path : path
         The file, or the output folder of a run.
     threads, contacts, law
-        As those of `Simulation`; a law is not in the file.
+        As those of `Simulation`; a law is not in the file, and is given again if the simulation had one.
 
     Returns
     -------
@@ -322,7 +358,8 @@ def resume(
     Raises
     ------
     ValueError
-        The file is damaged or holds something else, or files that the scene names have changed.
+        The file is damaged or holds something else, files that the scene names have changed, or it is of a simulation with a
+        law and none is given.
 
     Examples
     --------

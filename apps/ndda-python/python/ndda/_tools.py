@@ -3,30 +3,19 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal
 
 from ndda import _core
-from ndda._checks import whole
+from ndda._checks import names, thread_count, whole
+from ndda._files import file_of, findable, folder_of
 from ndda._scene import name_of, overrides_of, scene_of
 
 if TYPE_CHECKING:
+    from ndda._scene import SceneLike
     from ndda._view import Picture
 
     PathLike = str | os.PathLike[str]
-
-
-@contextmanager
-def _folder(out: PathLike | None) -> Iterator[str]:
-    """The folder of results, or one that is removed afterwards."""
-    if out is not None:
-        yield os.fspath(out)
-        return
-    import tempfile
-
-    with tempfile.TemporaryDirectory(prefix="ndda") as folder:
-        yield os.path.join(folder, "out")
 
 
 def _read(text: str) -> dict[str, Any]:
@@ -37,15 +26,15 @@ def _read(text: str) -> dict[str, Any]:
 
 
 def study(
-    scene: PathLike | _core.Scene,
+    scene: SceneLike,
     vary: Mapping[str, str | Sequence[object]] | None = None,
     *,
-    of: Sequence[str] = (),
+    of: str | Sequence[str] = (),
     fails_when: str | None = None,
     samples: int | None = None,
     sampling: Literal["lhs", "sobol"] | None = None,
     seed: int | None = None,
-    correlate: Sequence[str] = (),
+    correlate: str | Sequence[str] = (),
     sensitivity: bool = False,
     second_runs: Literal["auto", "always", "never"] | None = None,
     out: PathLike | None = None,
@@ -57,17 +46,17 @@ def study(
 
     Parameters
     ----------
-    scene : path or Scene
+    scene : path, Scene or builders.Scene
         A scene with `vary`, or the file of a study.
     vary : mapping, optional
         Values by their path: a list, or a distribution in RON such as ``"Normal(30, 2)"``.
-    of : sequence of str
+    of : str or sequence of str
         Quantities: `label`, `safety`, columns of a history, monitors, blocks; displacements otherwise.
     fails_when : str, optional
         Condition whose probability is wanted, such as ``"safety < 1"``.
     samples, sampling, seed
         How many samples of what is random (100), how they are spread ("lhs"), and their seed (0).
-    correlate : sequence of str
+    correlate : str or sequence of str
         Correlations of random parameters, such as ``"parameters.a,parameters.b=-0.5"``.
     sensitivity : bool
         Whether to find how much each random axis matters.
@@ -90,7 +79,7 @@ def study(
     SceneError
         The scene or the study cannot be used.
     ValueError
-        What is asked for is not there.
+        What is asked for is not there, or every case has failed: the message has the first reason.
 
     Examples
     --------
@@ -100,23 +89,33 @@ def study(
     >>> [round(case["values"][0], 6) for case in found["cases"]]
     [4.905, 4.905]
     """
-    if isinstance(scene, _core.Scene) and not vary:
+    if not isinstance(scene, (str, os.PathLike)) and not vary:
+        scene_of(scene)
         raise ValueError("nothing varies: give `vary`, or name the file of a study")
     options = {
         "vary": [f"{path}={_choices(values)}" for path, values in (vary or {}).items()],
-        "of": list(of),
+        "of": names("of", of),
         "fails_when": fails_when,
         "samples": samples,
         "sampling": sampling,
         "seed": seed,
-        "correlate": list(correlate),
+        "correlate": names("correlate", correlate),
         "sensitivity": sensitivity,
         "second_runs": second_runs,
         "overrides": overrides_of(overrides),
         **_at_a_time(jobs, threads),
     }
-    with _folder(out) as folder, _file(scene) as file:
-        return _read(_core._study(file, folder, options))
+    with folder_of(out) as folder, file_of(scene) as file:
+        return _some_done(_read(_core._study(file, folder, options)))
+
+
+def _some_done(found: dict[str, Any]) -> dict[str, Any]:
+    """The content of a study, unless all of its cases have failed."""
+    cases = found.get("cases") or found.get("points") or []
+    if cases and all(case.get("reason") for case in cases):
+        name, reason = cases[0]["name"] or "the scene", cases[0]["reason"]
+        raise ValueError(f"all cases of the study have failed, {len(cases)} of {len(cases)}; the first, {name}: {reason}")
+    return found
 
 
 def _at_a_time(jobs: int, threads: int) -> dict[str, int]:
@@ -130,29 +129,10 @@ def _choices(values: str | Sequence[object]) -> str:
     return values if isinstance(values, str) else ",".join(value_in_ron(value) for value in values)
 
 
-@contextmanager
-def _file(scene: PathLike | _core.Scene) -> Iterator[str]:
-    """The file of a scene; a changed one, or one of a text, is written for the time being."""
-    if not isinstance(scene, _core.Scene):
-        yield os.fspath(scene)
-        return
-    import tempfile
-    from pathlib import Path
-
-    file = Path(scene.file)
-    if file.is_file() and file.read_text(encoding="utf-8") == scene.text:
-        yield scene.file
-        return
-    with tempfile.TemporaryDirectory(prefix="ndda") as folder:
-        file = Path(folder) / f"{name_of(scene)}.ron"
-        file.write_text(scene.text, encoding="utf-8")
-        yield str(file)
-
-
 def certify(
-    scene: PathLike | _core.Scene,
+    scene: SceneLike,
     *,
-    of: Sequence[str] = (),
+    of: str | Sequence[str] = (),
     mesh: int = 0,
     penalty: int = 0,
     out: PathLike | None = None,
@@ -163,8 +143,8 @@ def certify(
 
     Parameters
     ----------
-    scene : path or Scene
-    of : sequence of str
+    scene : path, Scene or builders.Scene
+    of : str or sequence of str
         More quantities: columns of the history or blocks, by name or its beginning.
     mesh, penalty : int
         Finer meshes and stiffer contacts to run for their errors, 0 to 2 each.
@@ -193,13 +173,14 @@ def certify(
     True
     """
     scene = scene_of(scene)
-    options = {"of": list(of), "mesh": mesh, "penalty": penalty, **_at_a_time(jobs, threads)}
-    with _folder(out) as folder:
-        return _read(_core._certify(scene, name_of(scene), folder, options))
+    finer = {"mesh": whole("mesh", mesh, 0, 2), "penalty": whole("penalty", penalty, 0, 2)}
+    options = {"of": names("of", of), **finer, **_at_a_time(jobs, threads)}
+    with folder_of(out) as folder:
+        return _read(_core._certify(findable(scene), name_of(scene), folder, options))
 
 
 def safety(
-    scene: PathLike | _core.Scene,
+    scene: SceneLike,
     *,
     by: Literal["strength", "load", "gravity"] = "strength",
     towards: Sequence[float] | None = None,
@@ -211,7 +192,7 @@ def safety(
 
     Parameters
     ----------
-    scene : path or Scene
+    scene : path, Scene or builders.Scene
     by : {"strength", "load", "gravity"}
         Quantity that is changed until blocks fail.
     towards : sequence of 3 floats, optional
@@ -246,11 +227,13 @@ def safety(
     ...
     ValueError: joints have no friction, cohesion or tensile strength that could be reduced, ...
     """
+    if towards is not None and by != "gravity":
+        raise ValueError('towards works only with by="gravity": add that, or leave towards out')
     options = {
         "by": by,
         "towards": None if towards is None else [float(x) for x in towards],
         "error": error,
-        "threads": threads,
+        "threads": thread_count(threads),
     }
     scene = scene_of(scene)
     folder = None if out is None else os.fspath(out)
@@ -260,7 +243,7 @@ def safety(
 
 
 def stereonet(
-    joints: PathLike | _core.Scene,
+    joints: SceneLike,
     *,
     net: Literal["area", "angle"] = "area",
     slope: str | None = None,
@@ -272,7 +255,7 @@ def stereonet(
 
     Parameters
     ----------
-    joints : path or Scene
+    joints : path, Scene or builders.Scene
         A scene with joints, or a table of planes as CSV with the columns `dip_deg`, `dip_direction_deg` and `set`.
     net : {"area", "angle"}
         Projection: equal area (Schmidt) or equal angle (Wulff).
@@ -311,14 +294,14 @@ def stereonet(
     from ndda._view import Picture
 
     options = {"net": net, "slope": slope, "friction_deg": friction_deg, "lateral_deg": lateral_deg}
-    with _file(joints) as file, tempfile.TemporaryDirectory(prefix="ndda") as folder:
+    with file_of(joints) as file, tempfile.TemporaryDirectory(prefix="ndda") as folder:
         target = os.path.join(folder, "stereonet.svg") if out is None else os.fspath(out)
         found = _read(_core._stereonet(file, target, options))
         return found, Picture.of_file(target)
 
 
 def picture(
-    run: PathLike | _core.Scene,
+    run: SceneLike,
     *,
     frame: str = "auto",
     color: str | None = None,
@@ -336,7 +319,7 @@ def picture(
 
     Parameters
     ----------
-    run : path or Scene
+    run : path, Scene or builders.Scene
         Output folder of a run, or a scene.
     frame : str
         ``"first"``, ``"last"``, a number from 0, or a time such as ``"0.35s"``.
@@ -393,7 +376,7 @@ def picture(
         "size": size,
         "animate": animate,
     }
-    with _file(run) as file, tempfile.TemporaryDirectory(prefix="ndda") as folder:
+    with file_of(run) as file, tempfile.TemporaryDirectory(prefix="ndda") as folder:
         target = os.path.join(folder, "picture.png") if out is None else os.fspath(out)
         _core._picture(file, target, options)
         return Picture.of_file(target)

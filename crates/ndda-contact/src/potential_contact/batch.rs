@@ -34,6 +34,11 @@ pub trait BatchLaw: Send + Sync {
     /// Numbers that it keeps of each facet beside the shear force, zero where contact begins.
     fn state_len(&self) -> usize;
 
+    /// Its name, for messages; that of its type if it does not say another.
+    fn name(&self) -> &str {
+        std::any::type_name::<Self>()
+    }
+
     /// Stiffness against slip [Pa/m], for the bound of the time step; zero without springs.
     fn shear_stiffness_pa_m(&self) -> f64;
 

@@ -1,6 +1,7 @@
 //! Loads, supports and laws that change between two steps.
 
 use nalgebra::Rotation3;
+use ndda_contact::ContactError;
 use ndda_fem::supports::{BlockSupports, HeldNode, Spring};
 use ndda_mesh::BlockId;
 
@@ -45,10 +46,21 @@ pub enum TakeOverError {
     /// Blocks, integrator or contact at the end of steps differ.
     #[error("more differs than can change between steps: {0}")]
     OtherProblem(#[from] RestoreError),
+    /// The changed laws keep other numbers of each facet than those so far.
+    #[error(
+        "the friction laws so far keep {kept} numbers per facet, and the changed ones {wanted}: laws that remember slip, such as those with a residual or \
+         a roughness, begin and end with a simulation. Begin a new one with them, or give such a law from the start and change its values"
+    )]
+    Laws {
+        /// Numbers that are kept.
+        kept: usize,
+        /// Numbers that the changed laws keep.
+        wanted: usize,
+    },
     /// A stage of construction cannot be built.
     #[error("{0}")]
     Stage(String),
-    /// The state cannot be sampled under the changed loads or laws, or these keep other numbers of each facet.
+    /// The state cannot be sampled under the changed loads or laws.
     #[error(transparent)]
     Step(#[from] StepError),
 }
@@ -71,7 +83,7 @@ impl Simulation {
         self.restore(snapshot.clone())?;
         if self.has_contact() {
             // Laws that keep other numbers of each facet refuse the history here, and not in the next step.
-            self.contacts_at_start()?;
+            self.contacts_at_start().map_err(of_laws)?;
             self.restore(snapshot)?;
         }
         self.stop_held_nodes(before);
@@ -144,6 +156,16 @@ impl Simulation {
         let same_loads = new == old;
         let same = |block| self.shape(block).supports == before.shape(block).supports;
         !same_loads || !self.problem.blocks.ids().all(same)
+    }
+}
+
+/// The error of a state under changed laws.
+fn of_laws(error: StepError) -> TakeOverError {
+    match error {
+        StepError::Contact { source: ContactError::OtherLaws { kept, expected }, .. } => {
+            TakeOverError::Laws { kept, wanted: expected }
+        }
+        other => other.into(),
     }
 }
 

@@ -39,6 +39,13 @@ pub struct Choices {
 }
 
 impl Choices {
+    /// What stands in the place of the scene's parts, in words; none where everything is as the scene says.
+    pub(crate) fn own(&self) -> Option<String> {
+        let words = |law: &dyn BatchLaw| format!("the friction law `{}`", law.name());
+        let other = || (!self.are_the_scenes()).then(|| "a part of a program's own".to_string());
+        self.batch_law.as_deref().map(words).or_else(other)
+    }
+
     /// Whether everything is as the scene says.
     pub(crate) fn are_the_scenes(&self) -> bool {
         let models = self.contact.is_none() && self.potential.is_none() && self.friction.is_none();

@@ -25,13 +25,47 @@ pub enum Disturbance {
     Scene,
 }
 
-/// What other than a step has changed a simulation first, so that its steps cannot be taken again for the label.
+/// What other than a step has changed a simulation first, so that its steps cannot be taken again for the label, and how often something has since.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Disturbed {
     /// What it was.
     pub by: Disturbance,
     /// When it was \[s\].
     pub at_s: f64,
+    /// Steps that were done when something changed last.
+    last_step: u64,
+    /// How often something has changed at most [`SOON`] steps after the change before.
+    again: u64,
+}
+
+/// Steps between changes that drive a simulation, as a controller does: what they do depends on the step.
+const SOON: u64 = 10;
+/// So many changes, each soon after the one before, drive a simulation.
+const OFTEN: u64 = 3;
+
+impl Disturbed {
+    fn new(by: Disturbance, at_s: f64, step: u64) -> Self {
+        Self { by, at_s, last_step: step, again: 0 }
+    }
+
+    /// Notes another change, after so many steps.
+    fn note(&mut self, step: u64) {
+        self.again += u64::from((1..=SOON).contains(&step.saturating_sub(self.last_step)));
+        self.last_step = step;
+    }
+
+    /// Why the motion is not known to be accurate, where something was set in steps that follow each other: what is set holds for a whole step, of which
+    /// no check of the simulation knows what it was to be in between.
+    fn driving(&self) -> Option<String> {
+        let often = self.again >= OFTEN;
+        often.then(|| {
+            format!(
+                "blocks were driven in steps that follow each other ({self}, and {} times more soon after a change): errors of what is set \
+                 so are not judged, and are as large as the step; take the same steps with half of time.step_s, and compare",
+                self.again
+            )
+        })
+    }
 }
 
 impl fmt::Display for Disturbed {
@@ -69,8 +103,8 @@ impl Course {
 impl Driver {
     /// Notes that something other than a step has changed the simulation.
     pub(super) fn note_change(&mut self, by: Disturbance) {
-        let at_s = self.simulation().time_s();
-        self.course.disturbed.get_or_insert(Disturbed { by, at_s });
+        let (at_s, step) = (self.simulation().time_s(), self.simulation().state().step);
+        self.course.disturbed.get_or_insert(Disturbed::new(by, at_s, step)).note(step);
         self.course.forget_label();
     }
 
@@ -80,7 +114,8 @@ impl Driver {
     /// again, from a slightly different start or with half the step. The result is kept until the next step. They cannot be taken again after
     /// [`set_force`](Self::set_force), [`set_velocity`](Self::set_velocity) or a [`change`](Self::change) of what acts on blocks, nor with parts of the
     /// caller's own: where a run would have been repeated, the reasons then say that it was not, and the word is `Inaccurate` if that was to be with half
-    /// the step after impacts, whose errors may have grown. Before the last step, the label judges the steps that were taken.
+    /// the step after impacts, whose errors may have grown. It is `Inaccurate`, too, where blocks are driven in steps that follow each other, and the reasons
+    /// say so. Before the last step, the label judges the steps that were taken.
     pub fn label(&mut self) -> Label {
         self.label_watched(&AtomicBool::new(false), &|_| {})
     }
@@ -92,7 +127,8 @@ impl Driver {
             return judged.clone();
         }
         let stopped_by = self.sample().err().map(|error| format!("[{}] {error}", error.code()));
-        let label = verdict::label(&self.model.simulation, stopped_by.as_deref());
+        let mut label = verdict::label(&self.model.simulation, stopped_by.as_deref());
+        self.judge_driving(&mut label);
         if label.word != LabelWord::Accurate || !self.has_ended() {
             return label;
         }
@@ -106,6 +142,15 @@ impl Driver {
             },
         };
         self.course.judged.insert(other.unwrap_or(label)).clone()
+    }
+
+    /// Says in the label that blocks were driven in steps that follow each other, whatever the checks have found.
+    fn judge_driving(&self, label: &mut Label) {
+        let driving = self.course.disturbed.as_ref().and_then(Disturbed::driving);
+        if let (Some(reason), true) = (driving, label.word != LabelWord::Stopped) {
+            label.reasons.push(reason);
+            label.word = LabelWord::Inaccurate;
+        }
     }
 
     /// Whether all steps of the scene have been taken.
@@ -228,6 +273,51 @@ mod tests {
         let mut driver = at_end(driver);
         assert_eq!(driver.label(), summary.label);
         assert_eq!(driver.state_crc32(), summary.state_crc32);
+    }
+
+    /// A cube that is set to 1 m/s before each step hits another one, which does not leave at 2 m/s: it is off by a part that goes with the step.
+    #[test]
+    fn a_simulation_that_is_driven_in_each_step_is_not_called_accurate_and_a_single_blow_is() {
+        let text = crate::driver::EXAMPLE.1.replace("gravity_m_s2: (0, 0, -9.81), ", "");
+        let driver = || Driver::new(Model::from_text(&text).unwrap()).unwrap();
+        let set = |driver: &mut Driver| driver.set_velocity(BlockId(0), Vec3::x(), Vec3::zeros()).unwrap();
+        let (mut struck, mut driven) = (driver(), driver());
+        set(&mut struck);
+        for _ in 0..100 {
+            set(&mut driven);
+            driven.step(1).unwrap();
+        }
+        assert_eq!(at_end(struck).label().word, LabelWord::Accurate);
+        let label = driven.label();
+        let words =
+            "driven in steps that follow each other (a velocity was set at t = 0 s, and 99 times more";
+        assert!(
+            label.word == LabelWord::Inaccurate && label.reasons[0].contains(words),
+            "{:?}",
+            label.reasons
+        );
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("driven");
+        driven.save(&file).unwrap();
+        assert_eq!(Driver::load(&file, None).unwrap().label(), label);
+        // Before the last step, too.
+        let mut early = driver();
+        for _ in 0..10 {
+            early.set_force(BlockId(0), Vec3::x() * early.simulation().time_s()).unwrap();
+            early.step(1).unwrap();
+        }
+        assert_eq!(early.label().word, LabelWord::Inaccurate);
+    }
+
+    #[test]
+    fn changes_that_are_far_apart_do_not_drive_a_simulation() {
+        let mut disturbed = Disturbed::new(Disturbance::Force, 0.0, 0);
+        (1..100).for_each(|i| disturbed.note(i * (SOON + 1)));
+        assert_eq!(disturbed.driving(), None);
+        (0..3).for_each(|i| disturbed.note(99 * (SOON + 1) + i));
+        assert_eq!(disturbed.driving(), None, "a change of several things at once is one");
+        disturbed.note(99 * (SOON + 1) + 3);
+        assert!(disturbed.driving().is_some());
     }
 
     #[test]

@@ -22,9 +22,11 @@ struct Saved<S = Snapshot> {
     snapshot: S,
     /// What other than steps has changed it since the start.
     disturbed: Option<Disturbed>,
+    /// Parts that the scene does not name, in words.
+    own: Option<String>,
 }
 
-const KIND: &str = "ndda.driver/3";
+const KIND: &str = "ndda.driver/4";
 
 /// Why a driver cannot be saved.
 #[derive(Debug, thiserror::Error)]
@@ -46,6 +48,16 @@ pub enum LoadError {
     /// The file is not there, or holds something else.
     #[error("{0} holds no saved simulation: name a file that `save` wrote, or the output folder of a run")]
     NotSaved(String),
+    /// It was saved with parts that are not in the file.
+    #[error(
+        "{file} was saved with {own}, which is not in the file: resume with it, in Python `ndda.resume(file, law=…)`"
+    )]
+    Own {
+        /// The file.
+        file: String,
+        /// The parts.
+        own: String,
+    },
     /// Files that the scene names have changed.
     #[error(transparent)]
     Outside(#[from] OutsideFileError),
@@ -76,7 +88,8 @@ impl Driver {
         let identity = Identity::new(stem, loaded.text.clone(), folder.join(name), &loaded.scene);
         let snapshot = self.model.simulation.snapshot_view();
         let (kind, origin) = (KIND.into(), self.origin.to_string());
-        let saved = Saved { kind, origin, identity, snapshot, disturbed: self.course.disturbed };
+        let (disturbed, own) = (self.course.disturbed, self.own.clone());
+        let saved = Saved { kind, origin, identity, snapshot, disturbed, own };
         Ok(checkpoint::write_file(file, &saved)?)
     }
 
@@ -100,6 +113,9 @@ impl Driver {
             };
             if saved.kind != KIND {
                 return Err(not_saved());
+            }
+            if let (Some(own), None) = (saved.own, &parts) {
+                return Err(LoadError::Own { file: path.display().to_string(), own });
             }
             (saved.origin, saved.identity, saved.snapshot, saved.disturbed)
         };
