@@ -3,7 +3,7 @@
 //! **Penalty.** Contact at rest under a pressure σ lies σ L/(2 k_n) deep, where L is L₀ for `Smooth` and `Closure` and a quarter of the
 //! smallest height of a tetrahedron for `Element`. A block of size s that hits another at the speed v goes v √(ρ s L/(2 k_n)) deep. With
 //! k_n = L (ρ (v² + 2 g H) + 2 σ_l)/(2 ε s) the first is at most ε s, and the second √ε s: ρ is the largest density, g gravity, H the height
-//! of the scene along it, v the largest initial speed, σ_l the largest pressure of loads, ε the `depth_ratio` of the scene. s is the size that
+//! of the scene along it, v the largest initial speed or that of a support that follows rows, σ_l the largest pressure of loads (`choose/pressures.rs`), ε the `depth_ratio` of the scene. s is the size that
 //! blocks of a twentieth of the volume are below, so that a sliver does not decide. Under large loads k_n = E L/s is enough, where contact is as
 //! compliant as half a block. The result is rounded up to 1, 2 or 5 times a power of ten.
 //! Columns that stand free tilt on contact that gives way: with the width b and the height H of the box that has the second moments of a block, 3 b²/H takes the place of s
