@@ -199,6 +199,6 @@ mod tests {
         let moved = "supports: [(block: \"base\", on: All, hold: Motion([(time_s: 0, displacement_m: (0, 0, 0)), (time_s: 0.1, displacement_m: (0, 0, 1))]))]";
         let (penalty_pa, why) = chosen("", moved);
         assert_eq!(penalty_pa, chosen(", velocity_m_s: (0, 0, -10)", "").0);
-        assert!(why.contains("10 m/s"), "{why}");
+        assert!(why.contains("10.00 m/s"), "{why}");
     }
 }
