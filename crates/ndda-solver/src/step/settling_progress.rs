@@ -187,8 +187,11 @@ mod tests {
         let roof = (BodyKind::Fixed, [3.0, 3.0, 1.0], [-1.5, -1.5, 0.998]);
         let mut setup = boxes(&[base, cube, roof]);
         setup.gravity_m_s2 = Vec3::zeros();
-        for (node, &force_n) in (0..).zip(forces_n) {
-            setup.bodies[1].forces.push(ForceSetup { node, force_n: force_n * Vec3::x(), factor: None });
+        // All in one line, so that they do not turn the cube.
+        let corners = &setup.blocks.rest_position[setup.blocks.nodes_of(BlockId(1))];
+        let along = (corners[1] - corners[0]).normalize();
+        for (node, &force_n) in [0, 0, 1].into_iter().zip(forces_n) {
+            setup.bodies[1].forces.push(ForceSetup { node, force_n: force_n * along, factor: None });
         }
         let mut simulation = Simulation::new(setup).unwrap();
         let settle = Settle { damping: Some(damping), ..Settle::new(1e-4, 10_000) };
