@@ -3,7 +3,7 @@
 //! **Penalty.** Contact at rest under a pressure σ lies σ L/(2 k_n) deep, where L is L₀ for `Smooth` and `Closure` and a quarter of the
 //! smallest height of a tetrahedron for `Element`. A block of size s that hits another at the speed v goes v √(ρ s L/(2 k_n)) deep. With
 //! k_n = L (ρ (v² + 2 g H) + 2 σ_l)/(2 ε s) the first is at most ε s, and the second √ε s: ρ is the largest density, g gravity, H the height
-//! of the scene along it, v the largest initial speed, σ_l the largest pressure of loads, ε the `depth_ratio` of the scene. s is the size that
+//! of the scene along it, v the largest initial speed or that of a support that follows rows, σ_l the largest pressure of loads (`choose/pressures.rs`), ε the `depth_ratio` of the scene. s is the size that
 //! blocks of a twentieth of the volume are below, so that a sliver does not decide. Under large loads k_n = E L/s is enough, where contact is as
 //! compliant as half a block. The result is rounded up to 1, 2 or 5 times a power of ten.
 //! Columns that stand free tilt on contact that gives way: with the width b and the height H of the box that has the second moments of a block, 3 b²/H takes the place of s
@@ -15,6 +15,7 @@
 //! what waves want (`waves/steps.rs`), a tenth of the height of a tetrahedron at the largest initial speed, and a twentieth of a radian of rotation.
 
 mod loads;
+mod pressures;
 mod rounded;
 
 use std::path::Path;
@@ -22,7 +23,7 @@ use std::path::Path;
 use ndda_io::diagnostic::{Diagnostic, SceneErrors};
 use ndda_io::read::Chosen;
 use ndda_io::read::{self, LoadedScene};
-use ndda_io::scene::{Contact, ContactAt, FactorRow, Integrator, Scene, Stress, is_unset};
+use ndda_io::scene::{Contact, ContactAt, Integrator, Scene, is_unset};
 use ndda_mesh::geometry::{Aabb, tet_volume, triangle_area_vector};
 use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
 
@@ -30,6 +31,7 @@ use crate::build::{self, Fault, RockReport};
 use crate::forecast::held::NOTHING_MOVES;
 use crate::forecast::{admit, step};
 use crate::waves;
+use pressures::Load;
 pub(crate) use rounded::rounded_up;
 use rounded::{metres, rounded_down};
 
@@ -129,14 +131,22 @@ struct Sizes {
     /// Largest initial speed [m/s] and spin [rad/s].
     speed_m_s: f64,
     spin_rad_s: f64,
-    /// Largest pressure of loads [Pa].
-    load_pa: f64,
+    /// Largest speed of supports that follow rows of displacements [m/s].
+    support_m_s: f64,
+    /// Largest load that lasts, and largest blast.
+    load: Load,
+    blast: Load,
 }
 
 impl Sizes {
     fn new(scene: &Scene, blocks: &BlockSet) -> Self {
         let moving = build::moving(scene, blocks);
-        let gravity = Vec3::from(scene.gravity_m_s2);
+        let moves: Vec<bool> = moving.iter().map(Option::is_some).collect();
+        let extent = Aabb::around(&blocks.rest_position);
+        let extent_m = extent.max - extent.min;
+        let weighs_more =
+            |a: Vec3, b: Vec3| if b.abs().dot(&extent_m) > a.abs().dot(&extent_m) { b } else { a };
+        let gravity = pressures::gravities(scene).reduce(weighs_more).expect("a scene has a gravity");
         let (mut volumes, mut height_m, mut materials) = (Vec::new(), f64::INFINITY, Vec::new());
         let mut columns = Vec::new();
         for (block, moves) in blocks.ids().zip(&moving) {
@@ -155,7 +165,6 @@ impl Sizes {
             }
             volumes.push(volume);
         }
-        let extent = Aabb::around(&blocks.rest_position);
         let most = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
         let norm = |v: [f64; 3]| Vec3::from(v).norm();
         let small_m3 = small(volumes);
@@ -165,30 +174,33 @@ impl Sizes {
             block_m,
             column_m: columns.map(|(_, column_m)| column_m).fold(f64::INFINITY, f64::min),
             height_m,
-            fall_m: gravity.abs().dot(&(extent.max - extent.min)) / gravity.norm().max(f64::MIN_POSITIVE),
+            fall_m: gravity.abs().dot(&extent_m) / gravity.norm().max(f64::MIN_POSITIVE),
             gravity_m_s2: gravity.norm(),
             density_kg_m3: most(&mut materials.iter().map(|material| material.density_kg_m3)),
             young_pa: most(&mut materials.iter().map(|material| material.young_pa)),
             speed_m_s: most(&mut scene.blocks.iter().map(|block| norm(block.velocity_m_s))),
             spin_rad_s: most(&mut scene.blocks.iter().map(|block| norm(block.spin_rad_s))),
-            load_pa: loads_pa(scene, block_m),
+            support_m_s: pressures::speed_of_supports_m_s(scene),
+            load: pressures::at_rest(scene, blocks, &moves, block_m),
+            blast: pressures::of_blasts(scene, block_m),
         }
     }
 
     /// Largest pressure of weight and loads at rest [Pa].
     fn rest_pa(&self) -> f64 {
-        self.density_kg_m3 * self.gravity_m_s2 * self.fall_m + self.load_pa
+        self.weight_pa() + self.load.pa
     }
 
-    /// What presses on contacts, in words.
-    fn weight(&self) -> String {
-        let loads = match self.load_pa > 0.0 {
-            true => format!(" and loads of {:.1e} Pa", self.load_pa),
-            false => String::new(),
-        };
-        match (self.fall_m > 0.0, self.load_pa > 0.0) {
-            (false, true) => format!("loads of {:.1e} Pa", self.load_pa),
-            _ => format!("the weight of rock {} high{loads}", metres(self.fall_m)),
+    fn weight_pa(&self) -> f64 {
+        self.density_kg_m3 * self.gravity_m_s2 * self.fall_m
+    }
+
+    /// What presses on contacts beside a load, in words.
+    fn weight_and(&self, load: &Load) -> String {
+        match (self.fall_m > 0.0, load.pa > 0.0) {
+            (false, true) => load.in_words(),
+            (_, true) => format!("the weight of rock {} high and {}", metres(self.fall_m), load.in_words()),
+            (_, false) => format!("the weight of rock {} high", metres(self.fall_m)),
         }
     }
 }
@@ -212,21 +224,6 @@ fn column(blocks: &BlockSet, block: BlockId, volume_m3: f64, gravity: &Vec3) -> 
     let up = (0..3).max_by(|a, b| along(*a).total_cmp(&along(*b))).expect("there are three axes");
     let width_m = (0..3).filter(|k| *k != up).map(side).fold(f64::INFINITY, f64::min);
     SLENDER * width_m * width_m / side(up)
-}
-
-/// Largest pressure of tractions, forces on a face of a block, and stress in the ground [Pa].
-fn loads_pa(scene: &Scene, block_m: f64) -> f64 {
-    let norm = |v: [f64; 3]| Vec3::from(v).norm();
-    let factor = |rows: &[FactorRow]| match rows.is_empty() {
-        true => 1.0,
-        false => rows.iter().map(|row| row.factor.abs()).fold(0.0, f64::max),
-    };
-    let tractions = scene.tractions.iter().map(|load| norm(load.traction_pa) * factor(&load.factor));
-    let forces = scene.forces.iter().map(|load| norm(load.force_n) * factor(&load.factor) / block_m.powi(2));
-    let largest =
-        |s: &Stress| [s.xx, s.yy, s.zz, s.xy, s.yz, s.zx].into_iter().map(f64::abs).fold(0.0, f64::max);
-    let stress = scene.in_situ.iter().map(|stress| largest(&stress.stress_pa));
-    tractions.chain(forces).chain(stress).fold(0.0, f64::max)
 }
 
 /// Smallest height of a tetrahedron [m].
@@ -269,7 +266,7 @@ pub(crate) fn resting(scene: &Scene, blocks: &BlockSet) -> Option<Resting> {
     let sizes = Sizes::new(scene, blocks);
     let overlap = reference_m * sizes.rest_pa() / (2.0 * penalty_pa * sizes.block_m);
     let penalty_pa = rounded_up(penalty_pa * overlap / depth_ratio);
-    (overlap > 0.0).then(|| Resting { overlap, under: sizes.weight(), penalty_pa })
+    (overlap > 0.0).then(|| Resting { overlap, under: sizes.weight_and(&sizes.load), penalty_pa })
 }
 
 /// Chooses the penalty where it is left out.
@@ -288,8 +285,12 @@ fn penalty(scene: &mut Scene, sizes: &Sizes) -> Option<Chosen> {
         let reason = format!("{NOTHING_MOVES}; {OF_YOUNG:e} of Young's modulus");
         return Some(Chosen { path: "contact.penalty_pa".into(), value: *penalty_pa, reason });
     }
-    let Sizes { block_m, column_m, density_kg_m3: rho, speed_m_s: v, .. } = *sizes;
-    let pressure_pa = rho * v * v + 2.0 * sizes.rest_pa();
+    let Sizes { block_m, column_m, density_kg_m3: rho, .. } = *sizes;
+    let load = pressures::larger(&sizes.load, &sizes.blast);
+    let v = sizes.speed_m_s.max(sizes.support_m_s);
+    let (impact_pa, rest_pa) = (rho * v * v, sizes.weight_pa() + load.pa);
+    let pressure_pa = impact_pa + 2.0 * rest_pa;
+    let weight = sizes.weight_and(load);
     // Columns matter where they rest on each other, and lean.
     let is_slender = column_m < block_m && sizes.rest_pa() > 0.0;
     let overlaps_m = if is_slender { column_m } else { block_m };
@@ -308,12 +309,16 @@ fn penalty(scene: &mut Scene, sizes: &Sizes) -> Option<Chosen> {
                 "as stiff as half a block of {}; blocks overlap by at most {:.0e} of their size at rest under {}",
                 metres(overlaps_m),
                 length_m * pressure_pa / (2.0 * rounded_up(stiff_pa) * overlaps_m),
-                sizes.weight()
+                weight
             ),
         )
     } else {
-        let (size, weight) = (metres(overlaps_m), sizes.weight());
+        let size = metres(overlaps_m);
         let why = match is_slender {
+            _ if rest_pa == 0.0 => format!(
+                "blocks of {size} that meet at {v:.2} m/s overlap by at most {:.0e} of their size",
+                depth_ratio.sqrt()
+            ),
             true => format!(
                 "so that columns hardly lean: contact at rest under {weight} is at most {depth_ratio:e} of {size} deep; {size} is 3 × width²/height of the slenderest"
             ),

@@ -86,7 +86,7 @@ pub struct StageLaws {
 pub enum Then {
     /// To rest: after `over_s`, and one step at least, time stands still until forces balance, with damping as in `settle`.
     Settle {
-        /// Speed left over the largest speed on the way, and with `Adaptive` and `Local` damping unbalanced forces over loads [-]. Default: 1e-4.
+        /// Speed left over the largest speed on the way, and with `Adaptive` and `Local` damping unbalanced forces over loads, or over the largest unbalanced forces on the way where loads cancel or there are none [-]. Default: 1e-4.
         #[serde(default = "tolerance")]
         tolerance: f64,
         /// Steps after which it is given up. Default: 1000000.

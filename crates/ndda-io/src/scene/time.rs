@@ -35,7 +35,7 @@ pub struct Time {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct Settle {
-    /// Speed left over the largest speed on the way, and with `Adaptive` and `Local` damping unbalanced forces over loads [-]. Default: 1e-4.
+    /// Speed left over the largest speed on the way, and with `Adaptive` and `Local` damping unbalanced forces over loads, or over the largest unbalanced forces on the way where loads cancel or there are none [-]. Default: 1e-4.
     pub tolerance: f64,
     /// Steps after which it is given up. Default: 1000000.
     pub most_steps: u64,

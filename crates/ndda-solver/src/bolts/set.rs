@@ -74,4 +74,9 @@ impl Bolts {
         let force = vec![Vec3::zeros(); blocks.rest_position.len()];
         Ok((Self { list, sizes, rows, work, force, before: memory.clone() }, memory))
     }
+
+    /// Sum over all nodes of how large the forces on them are, where they cancel too [N].
+    pub(crate) fn size_n(&self) -> f64 {
+        self.rows.iter().map(|(node, _)| self.force[*node as usize].norm()).sum()
+    }
 }

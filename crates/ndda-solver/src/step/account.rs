@@ -47,6 +47,7 @@ impl Simulation {
         sums.clear();
         sums.force.add(&self.loads.force());
         sums.exchanged_n.add(self.loads.size_n());
+        sums.exchanged_n.add(self.bolts.as_ref().map_or(0.0, |bolts| bolts.size_n()));
         sums.friction_j.add(contact.dilation_work_j);
         let (mut rate2, mut speed_m_s) = (0.0f64, 0.0f64);
         for body in &self.bodies {

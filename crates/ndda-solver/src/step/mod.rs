@@ -17,6 +17,7 @@ pub(crate) mod drawn_overlaps;
 pub(crate) mod drive;
 pub(crate) mod first_step;
 pub(crate) mod follower;
+pub(crate) mod force_energies;
 pub(crate) mod implicit_contact;
 pub(crate) mod line_search;
 pub(crate) mod loads;

@@ -132,13 +132,6 @@ const PATIENCE: u64 = 10_000;
 const PATIENT_QUARTERS: u64 = 20;
 
 impl Simulation {
-    /// Kinetic energy that its loads alone would give a block in a step [J].
-    pub(super) fn load_energy_j(&self, block: BlockId) -> f64 {
-        let load: Vec3 = self.loads.total()[self.blocks().nodes_of(block)].iter().sum();
-        let mass_kg = self.inertia_factor(block) * self.shape(block).operator.mass_kg;
-        0.5 * (self.part_s * load).norm_squared() / mass_kg
-    }
-
     /// Runs with kinetic damping until all blocks are at rest, then sets time and displacements to zero; initial
     /// velocities come after it. What contact remembers stays; loads and prescribed motions are those of the start.
     ///

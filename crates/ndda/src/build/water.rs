@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use ndda_fem::{LinearField, PressureField, PressurePiece};
-use ndda_io::scene::{self, LinearPressure, Pressure, Scene, Wet};
+use ndda_io::scene::{self, LinearPressure, Pressure, Scene, Water, Wet};
 use ndda_mesh::{BlockId, BlockSet, Vec3};
 use ndda_solver::{BodySetup, PressureSetup};
 
@@ -16,7 +16,7 @@ type Faces = (BlockId, Vec<[u32; 3]>);
 /// Gives bodies the water on their faces.
 pub(super) fn add_water(scene: &Scene, blocks: &BlockSet, bodies: &mut [BodySetup], faults: &mut Vec<Fault>) {
     for (i, water) in scene.water.iter().enumerate() {
-        let field = Arc::new(field(scene, blocks, &water.pressure));
+        let field = Arc::new(field(scene.gravity_m_s2, blocks, &water.pressure));
         match wet(blocks, &water.on) {
             Ok(parts) => {
                 for (block, triangles) in parts {
@@ -37,6 +37,18 @@ pub(crate) fn wet_places(blocks: &BlockSet, on: &Wet) -> Option<Vec<Vec3>> {
         triangles.iter().flatten().map(|node| nodes[*node as usize] + blocks.origin_m)
     });
     Some(corners.collect()).filter(|corners: &Vec<Vec3>| !corners.is_empty())
+}
+
+/// Largest pressure of water on blocks that move, at the corners of their faces and a factor of one [Pa].
+pub(crate) fn largest_pa(gravity_m_s2: [f64; 3], blocks: &BlockSet, water: &Water, moves: &[bool]) -> f64 {
+    let field = field(gravity_m_s2, blocks, &water.pressure);
+    let parts = wet(blocks, &water.on).unwrap_or_default();
+    let pressures_pa =
+        parts.iter().filter(|(block, _)| moves[block.index()]).flat_map(|(block, triangles)| {
+            let nodes = &blocks.rest_position[blocks.nodes_of(*block)];
+            triangles.iter().flatten().map(|node| field.at(&nodes[*node as usize]).abs())
+        });
+    pressures_pa.fold(0.0, f64::max)
 }
 
 fn wet(blocks: &BlockSet, on: &Wet) -> Result<Vec<Faces>, String> {
@@ -60,12 +72,12 @@ fn wet(blocks: &BlockSet, on: &Wet) -> Result<Vec<Faces>, String> {
     }
 }
 
-fn field(scene: &Scene, blocks: &BlockSet, pressure: &Pressure) -> PressureField {
+fn field(gravity_m_s2: [f64; 3], blocks: &BlockSet, pressure: &Pressure) -> PressureField {
     let place = |at_m: [f64; 3]| vec3(at_m) - blocks.origin_m;
     let linear = |pressure_pa: f64, at_m: [f64; 3], gradient_pa_m: [f64; 3]| {
         LinearField::through(&place(at_m), pressure_pa, vec3(gradient_pa_m))
     };
-    match pressure.held(scene.gravity_m_s2) {
+    match pressure.held(gravity_m_s2) {
         Pressure::Linear { pressure_pa, at_m, gradient_pa_m } => {
             least(&[linear(pressure_pa, at_m, gradient_pa_m)])
         }

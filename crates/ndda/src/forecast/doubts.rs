@@ -123,7 +123,7 @@ fn penalty(scene: &Scene, simulation: &Simulation, penalty_pa: f64, potential: &
     };
     let resting = choose::resting(scene, simulation.blocks());
     let enough_pa = resting.as_ref().map_or(1e-2 * stiffest_pa, |resting| resting.penalty_pa);
-    if ratio > HARD && is_soft_at_edges(scene, simulation, enough_pa) {
+    if ratio > HARD && is_too_soft(scene, simulation, enough_pa) {
         return None;
     }
     let advised = match resting {
@@ -137,13 +137,14 @@ fn penalty(scene: &Scene, simulation: &Simulation, penalty_pa: f64, potential: &
     ))
 }
 
-/// Whether blocks lean or rock by too much with another penalty.
-fn is_soft_at_edges(scene: &Scene, simulation: &Simulation, other_pa: f64) -> bool {
+/// Whether blocks lean or rock by too much with another penalty, or joints take too much of the stress in the ground.
+fn is_too_soft(scene: &Scene, simulation: &Simulation, other_pa: f64) -> bool {
     let mut softer = scene.clone();
     if let Some(Contact::Potential { penalty_pa, .. }) = &mut softer.contact {
         *penalty_pa = other_pa;
     }
     lean::worst(&softer, simulation).is_some()
+        || ground_stress::is_lost(&softer, simulation)
         || rocking::worst(&softer, simulation).is_some_and(|rocking| rocking.is_doubtful())
 }
 
@@ -170,5 +171,34 @@ mod tests {
         };
         let (leans, is_deep, cures) = told("1");
         assert!(leans && is_deep && cures.len() == 1, "{leans} {is_deep} {cures:?}");
+    }
+
+    #[test]
+    fn contact_is_not_called_stiff_where_less_would_take_the_stress_in_the_ground() {
+        let cures = |penalty_pa: &str, in_situ: &str| {
+            let block = |k: u32| {
+                format!(
+                    "(name: \"b{k}\", material: \"rock\", shape: Box(size_m: (0.5, 0.5, 0.5), cells: (1, 1, 1)), at_m: (0, 0, {}))",
+                    0.5 * f64::from(k)
+                )
+            };
+            let text = format!(
+                "(title: \"ground\", time: (step_s: 1e-6, end_s: 1e-5), settle: (), {in_situ}
+                 materials: [(name: \"rock\", young_pa: 2e10, poisson: 0.25, density_kg_m3: 2500)],
+                 blocks: [{}, {}],
+                 supports: [(block: \"*\", on: Set(\"z_min\"), hold: Direction((0, 0, 1)))],
+                 contact: Potential(penalty_pa: {penalty_pa}, potential: Smooth(reference_m: 1), friction: (friction_deg: 60)))",
+                block(0), block(1)
+            );
+            let model = Model::from_text(&text).unwrap();
+            let all = doubts(&model.loaded.scene, &model.simulation, None, None, Path::new("."));
+            all.into_iter().filter(|doubt| doubt.contains("penalty_pa")).collect::<Vec<_>>()
+        };
+        let in_situ = "in_situ: (stress_pa: (zz: -5e6)),";
+        let lost = cures("5e10", in_situ);
+        assert!(lost.len() == 1 && lost[0].contains("is lost as joints close"), "{lost:?}");
+        // With the penalty that was advised nothing is said.
+        assert_eq!(cures("1e12", in_situ), Vec::<String>::new());
+        assert!(cures("1e12", "")[0].contains("nothing is gained"));
     }
 }

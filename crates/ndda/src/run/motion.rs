@@ -163,13 +163,13 @@ fn rotation_deg(simulation: &Simulation, block: BlockId) -> f64 {
     turn_deg(simulation, simulation.counted_from(), block)
 }
 
-/// Angle of the rotation that fits the motion of the nodes best, from 0 to 180 [°].
+/// Angle of the rotation in the motion of the nodes, from 0 to 180 [°].
 fn turn_deg(simulation: &Simulation, from: &[Vec3], block: BlockId) -> f64 {
     let (angle, _) = angle_and_axis(&rotation(simulation, from, block));
     angle.to_degrees()
 }
 
-/// The rotation that fits the motion of the nodes best: its axis, as long as its angle [rad].
+/// The rotation in the motion of the nodes: its axis, as long as its angle [rad].
 pub(crate) fn turn_rad(simulation: &Simulation, from: &[Vec3], block: BlockId) -> Vec3 {
     let (angle, axis) = angle_and_axis(&rotation(simulation, from, block));
     axis.try_normalize(0.0).map_or_else(Vec3::zeros, |axis| angle * axis)
@@ -185,7 +185,8 @@ fn angle_and_axis(rotation: &Mat3) -> (f64, Vec3) {
     (axial.norm().atan2(rotation.trace() - 1.0), axial)
 }
 
-/// The rotation that fits the motion of the nodes best: the orthogonal part of Σ m (x − c)(X − C)ᵀ by its singular values (Kabsch 1976).
+/// The rotation in the motion of the nodes: the orthogonal part of A = Σ m (x − c)(X − C)ᵀ by its singular values, which fits best (Kabsch 1976). Of a block that deforms,
+/// that of A S⁻¹, S = Σ m (X − C)(X − C)ᵀ, the affine motion that fits best: strain of a mesh without symmetry turns A, and is no rotation.
 fn rotation(simulation: &Simulation, from: &[Vec3], block: BlockId) -> Mat3 {
     let (operator, nodes) = (&simulation.shape(block).operator, simulation.blocks().nodes_of(block));
     let now = &simulation.state().position[nodes.clone()];
@@ -197,6 +198,13 @@ fn rotation(simulation: &Simulation, from: &[Vec3], block: BlockId) -> Mat3 {
     let mut moment = Mat3::zeros();
     for ((&mass, x), old) in operator.node_mass.iter().zip(now).zip(start) {
         moment += mass * (x - center) * (old - first).transpose();
+    }
+    if matches!(simulation.shape(block).kind, BodyKind::Elastic | BodyKind::Affine) {
+        let mut size = Mat3::zeros();
+        for (&mass, old) in operator.node_mass.iter().zip(start) {
+            size += mass * (old - first) * (old - first).transpose();
+        }
+        moment *= size.try_inverse().unwrap_or_else(Mat3::identity);
     }
     let parts = moment.svd(true, true);
     let (Some(left), Some(right)) = (parts.u, parts.v_t) else { return Mat3::identity() };
@@ -290,6 +298,18 @@ mod tests {
             blocks: [(name: \"cube\", material: \"rock\", shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), velocity_m_s: (0, 0, 2))])";
         let summary = Run::new(Model::from_text(text).unwrap()).finish(&mut []).unwrap().summary;
         assert_eq!(summary.motion.unwrap().course, Course::Moving);
+    }
+
+    #[test]
+    fn strain_of_a_mesh_without_symmetry_is_no_rotation() {
+        let text = "(title: \"stretched\", contact: Off, time: (step_s: 1e-5, end_s: 5e-4),
+            materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: 2600)],
+            blocks: [(name: \"cube\", material: \"rock\", body: Affine, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1), pattern: Six),
+                      initial_stress_pa: (xx: -2e7))])";
+        let summary = Run::new(Model::from_text(text).unwrap()).finish(&mut []).unwrap().summary;
+        let cube = &summary.blocks.0[0].1.motion;
+        assert!(cube.farthest_m > 1e-4, "{} m", cube.farthest_m);
+        assert!(cube.rotation_deg < 1e-8, "{}°", cube.rotation_deg);
     }
 
     #[test]

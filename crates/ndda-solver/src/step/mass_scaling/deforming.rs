@@ -6,12 +6,15 @@
 use ndda_mesh::BlockId;
 use ndda_mesh::geometry::triangle_area_vector;
 
+use crate::bodies::kind::BodyKind;
 use crate::bodies::prototype::Prototype;
 use crate::error::StepError;
 use crate::step::Simulation;
 
 /// Least mass of a block over what contact all around it would ask for: it hits others, where it touches none at first.
 const LEAST: f64 = 0.25;
+/// ω² of an elastic block under a force at one node over the bound from its row-sum masses, less one: the consistent mass of a tetrahedron is at least a fifth of these.
+const MORE_AT_A_NODE: f64 = 4.0;
 /// Part of the largest stable h beyond which blocks get more mass.
 const MOST: f64 = 0.98;
 
@@ -51,6 +54,22 @@ impl Simulation {
         blocks.ids().map(rate2).collect()
     }
 
+    /// Upper bounds of ω² of elastic blocks with these ω_c² [1/s²], with what bolts add: contact is spread over the nodes of a face, and a bolt acts on a few nodes, which
+    /// consistent masses let oscillate faster than row sums say.
+    fn rates2_with_bolts(&self, rates2: &[f64]) -> Vec<f64> {
+        let Some(bolts) = &self.bolts else { return rates2.to_vec() };
+        let mut stiffness_n_m = vec![0.0; self.state.position.len()];
+        bolts.rows.iter().for_each(|(node, stiffness)| stiffness_n_m[*node as usize] = *stiffness);
+        let with_bolts = |(block, rate2): (BlockId, &f64)| match self.shape(block).kind {
+            BodyKind::Elastic => {
+                let of_block = &stiffness_n_m[self.blocks().nodes_of(block)];
+                rate2 + MORE_AT_A_NODE * self.shape(block).contact_rate2(of_block)
+            }
+            _ => *rate2,
+        };
+        self.blocks().ids().zip(rates2).map(with_bolts).collect()
+    }
+
     /// Factors on the masses of shapes with which blocks oscillate as fast as the step allows under contacts with these ω_c² [1/s²]; or so many times
     /// slower, as far as that does not ask for more than their own masses.
     pub(super) fn factors_of_shapes(&self, (scale_s2, slower): (f64, f64), rates2: &[f64]) -> Vec<f64> {
@@ -61,7 +80,9 @@ impl Simulation {
             .filter(|(_, lambda)| **lambda > 0.0)
             .fold(0.0, |most: f64, (rate2, lambda)| most.max(rate2 / lambda));
         let mut factors = vec![0.0f64; self.problem.shapes.len()];
-        for ((body, rate2), lambda) in self.bodies.iter().zip(rates2).zip(&surrounded) {
+        for ((body, rate2), lambda) in
+            self.bodies.iter().zip(&self.rates2_with_bolts(rates2)).zip(&surrounded)
+        {
             if *lambda > 0.0 {
                 let asked = scale_s2 * rate2.max(LEAST * stiffness_pa_m * lambda);
                 factors[body.shape] = factors[body.shape].max(asked);
