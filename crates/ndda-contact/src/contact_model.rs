@@ -3,7 +3,9 @@
 use ndda_mesh::{BlockId, BlockSet, TriangleId};
 
 use crate::audit::ContactAudit;
-use crate::model::{ContactError, ContactHistory, ContactInput, ContactOutput, ContactReport};
+#[cfg(feature = "potential")]
+use crate::friction::law::FrictionLaw;
+use crate::model::{ContactError, ContactHistory, ContactInput, ContactOutput, ContactReport, FacetContact};
 use crate::pair_stiffness::PairStiffness;
 
 /// A law of contact between blocks. `&mut self` is scratch only; memory that matters is in [`ContactHistory`].
@@ -49,26 +51,28 @@ pub trait ContactModel: ContactAudit + Send + Sync {
         false
     }
 
-    /// Stiffness across and along the normal by which a facet holds to a block that it touches when contact begins \[Pa/m\]; none where it does not.
-    fn bond_stiffness_pa_m(
+    /// The law by which a facet rubs on a block, or holds to it; none where nothing rubs, or where the model has no such laws.
+    #[cfg(feature = "potential")]
+    fn friction_law(
         &self,
         _blocks: &BlockSet,
         _facet: TriangleId,
         _target: BlockId,
-    ) -> Option<[f64; 2]> {
+    ) -> Option<&dyn FrictionLaw> {
         None
     }
 
-    /// Takes over the history of another model, whose laws were others: laws that keep other numbers of a facet begin anew, what touches now and holds together
-    /// under these laws alone does so from now on, what holds together more stiffly or more softly than before carries what it did, and what carries more than
-    /// its strength breaks.
+    /// Takes over the history of another model, whose laws were others; it comes with what [each facet does](ContactAudit::add_facets) under them. What a facet keeps and means the same under its law before and after goes on, the rest
+    /// begins anew. What touches now and holds together under these laws alone does so from now on, and carries the shear that the springs of its facets did; what held
+    /// together before alone leaves its shear to them. What holds together more stiffly or more softly than before carries what it did, and what carries more than its
+    /// strength breaks.
     ///
     /// # Errors
     /// As [`add_forces`](Self::add_forces).
     fn take_over(
         &mut self,
         _input: &ContactInput,
-        _before: &dyn ContactModel,
+        _before: (&dyn ContactModel, &[FacetContact]),
         _history: &mut ContactHistory,
     ) -> Result<(), ContactError> {
         Ok(())

@@ -174,7 +174,8 @@ fn let_go(bonds: u32) -> String {
     match bonds {
         0 => String::new(),
         _ => format!(
-            ", although it rested as long as its joints held: {bonds} of their bonds carry more than their strength"
+            ", although it rested as long as its joints held: at {bonds} of their points they carry more than friction, and what they have of cohesion and \
+             tensile strength, can bear"
         ),
     }
 }
@@ -193,7 +194,7 @@ fn cure_of_unrest(
     }
     let cure = match stalled {
         _ if overloaded_bonds > 0 => {
-            "support them, give their joints more strength, or leave out settle if they are to slide or fall"
+            "support them, give their joints more friction or cohesion, or leave out settle if they are to slide or fall"
         }
         None => {
             "hold them, leave out settle if they are to slide or fall, or raise settle.most_steps if they are only slow"

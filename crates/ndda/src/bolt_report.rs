@@ -14,6 +14,9 @@ const LISTED: usize = 8;
 /// Length outside of the rock over that bonded in it which is rounding.
 const SHORT: f64 = 1e-6;
 
+/// Length in front of the rock below which a head lies on its face [m].
+const IN_FRONT_M: f64 = 5e-4;
+
 fn lie(count: usize) -> String {
     format!("{} {}", counted(count, "bolt", "bolts"), if count == 1 { "lies" } else { "lie" })
 }
@@ -29,7 +32,9 @@ pub struct BoltReport {
     pub blocks: Vec<String>,
     /// Those in which it is bonded, from its head.
     pub bonded_in: Vec<String>,
-    /// Length that lies in no block, between its head and its end [m].
+    /// Length from its head to the first block [m].
+    pub in_front_m: f64,
+    /// Length that lies in no block, between the first block and its end [m].
     pub outside_m: f64,
 }
 
@@ -65,6 +70,7 @@ impl BoltReports {
                 bonded_m: simulation.bonded_m(index),
                 blocks: portions.iter().map(name_of).collect(),
                 bonded_in,
+                in_front_m: portions.first()?.from_m,
                 outside_m: gaps.sum::<f64>() + (simulation.bolt_length_m(index) - portions.last()?.to_m),
             })
         };
@@ -136,6 +142,13 @@ impl fmt::Display for BoltReports {
             if bolt.outside_m > SHORT * bolt.bonded_m {
                 write!(f, "; {:.3} m in no block", bolt.outside_m)?;
             }
+            if bolt.in_front_m > IN_FRONT_M {
+                let (m, first) = (bolt.in_front_m, &bolt.blocks[0]);
+                write!(
+                    f,
+                    "; its head is {m:.3} m in front of {first}, and from_m and to_m of its grout count from there"
+                )?;
+            }
         }
         if self.0.len() > LISTED { write!(f, "\n  and {} more", self.0.len() - LISTED) } else { Ok(()) }
     }
@@ -146,6 +159,11 @@ mod tests {
     use super::*;
 
     fn reports(to_m: &str, grouted: &str) -> BoltReports {
+        reports_from(1.9, to_m, grouted)
+    }
+
+    /// Of a bolt whose head is so high [m].
+    fn reports_from(head_m: f64, to_m: &str, grouted: &str) -> BoltReports {
         let text = format!(
             r#"(
                 title: "A bolt through two blocks", time: (step_s: 1e-4, end_s: 1e-3),
@@ -156,7 +174,7 @@ mod tests {
                 ],
                 contact: Potential(penalty_pa: 1e9, friction: (friction_deg: 30)),
                 bolts: [(
-                    name: "anchor", at: Line(from_m: (0.4, 0.45, 1.9), to_m: {to_m}),
+                    name: "anchor", at: Line(from_m: (0.4, 0.45, {head_m}), to_m: {to_m}),
                     steel: (young_pa: 200e9, area_m2: 5e-4), grout: (stiffness_n_m2: 1e9, strength_n_m: 2e5{grouted}),
                 )],
             )"#
@@ -181,6 +199,14 @@ mod tests {
             let told = reports(to_m, grouted).to_string();
             assert_eq!(told.lines().last().unwrap().trim(), said);
         }
+    }
+
+    #[test]
+    fn a_head_in_front_of_the_rock_is_told_with_what_counts_from_it() {
+        let told = reports_from(2.5, "(0.4, 0.45, 0.2)", ", from_m: 1").to_string();
+        let expected = "anchor: 1.300 m in top, foot; its head is 0.500 m in front of top, and from_m and to_m of its grout count from there";
+        assert_eq!(told.lines().last().unwrap().trim(), expected);
+        assert!(!reports_from(2.0, "(0.4, 0.45, 0.2)", "").to_string().contains("in front"));
     }
 
     #[test]

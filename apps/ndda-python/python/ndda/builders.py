@@ -440,7 +440,9 @@ class BoltGrout(Builder):
         Largest shear force per length of bolt, s_b = π D τ of a borehole of diameter D and a bond of strength
         τ [N/m].
     from_m : float, optional
-        Where the bonded length begins, from the head [m]; the bolt is free before it. Default: at the head.
+        Where the bonded length begins, from the head [m]; the bolt is free before it. The head is the point
+        `from_m` of a `Line`, also where that lies in front of the rock, and of `Rows` the point where the
+        bolt meets it. Default: at the head.
     to_m : float, optional
         Where it ends, from the head [m]. Default: at the end.
 
@@ -468,12 +470,12 @@ class BoltPlace:
 
     @dataclass(kw_only=True)
     class Line(Builder):
-        """One bolt; it begins where it first meets a block.
+        """One bolt; what of it lies in front of the first block holds nothing.
 
         Parameters
         ----------
         from_m : Sequence[float]
-            Head [m].
+            Head [m], on a face or in front of it: lengths from the head count from this point.
         to_m : Sequence[float]
             End [m].
 

@@ -10,12 +10,13 @@ use crate::assembly::searched_friction;
 use crate::contact_model::ContactModel;
 use crate::friction::bond;
 use crate::friction::facet::FacetScene;
+use crate::friction::law::FrictionLaw;
 use crate::friction::law_table::FrictionLawTable;
 use crate::friction::openings::Moment;
 use crate::friction::patches::PatchScene;
 use crate::friction::twist::couples_of_springs;
 use crate::integration::overlap_pair::ActiveFacet;
-use crate::model::{ContactError, ContactHistory, ContactInput, ContactOutput, ContactReport};
+use crate::model::{ContactError, ContactHistory, ContactInput, ContactOutput, ContactReport, FacetContact};
 use crate::pair_stiffness::PairStiffness;
 
 use crate::potential::contact_potential::OverlapLaw;
@@ -207,24 +208,24 @@ impl ContactModel for PotentialContact {
         true
     }
 
-    fn bond_stiffness_pa_m(&self, blocks: &BlockSet, facet: TriangleId, target: BlockId) -> Option<[f64; 2]> {
-        let law = self.joints.as_ref()?.law(blocks, facet, target).filter(|law| law.holds_together())?;
-        Some([law.shear_stiffness_pa_m(), law.bond_stiffness_pa_m()])
+    fn friction_law(
+        &self,
+        blocks: &BlockSet,
+        facet: TriangleId,
+        target: BlockId,
+    ) -> Option<&dyn FrictionLaw> {
+        self.joints.as_ref()?.law(blocks, facet, target)
     }
 
     fn take_over(
         &mut self,
         input: &ContactInput,
-        before: &dyn ContactModel,
+        (before, carried): (&dyn ContactModel, &[FacetContact]),
         history: &mut ContactHistory,
     ) -> Result<(), ContactError> {
-        history.begin_laws(self.joints.as_ref().map_or(0, FrictionLawTable::state_len));
-        if history.begun {
-            self.keep_forces(input, before, history);
-            self.bond_more(input, before, history)?;
-            self.break_quietly(input, history)?;
-        }
-        Ok(())
+        self.change_laws(input.blocks, before, history);
+        self.take_friction_of_faces(input, (before, carried), history);
+        if history.begun { self.change_bonds(input, before, history) } else { Ok(()) }
     }
 
     fn uses_host_forces(&self, block: BlockId) -> bool {

@@ -143,7 +143,6 @@ impl PotentialContact {
         }
         self.new_facets.clear();
         self.new_state.clear();
-        let joints = self.joints.as_ref();
         let len = history.law_state_len as usize;
         for (t, (touch, outcome)) in self.integrals.touching().iter().zip(&self.outcomes).enumerate() {
             if let Some(KeptShear { shear_n, twist_n_m, broken }) = outcome.memory {
@@ -151,7 +150,7 @@ impl PotentialContact {
                 self.new_facets.push(FacetMemory {
                     facet: touch.triangle,
                     target: touch.target,
-                    element: element_of(joints, self.integrals.overlaps_of(touch)),
+                    element: element_of(self.joints.as_ref(), self.integrals.overlaps_of(touch)),
                     shear_n,
                     twist_n_m,
                     area_m2: self.integrals.sums_of(touch).area,

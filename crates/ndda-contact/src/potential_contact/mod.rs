@@ -9,6 +9,7 @@ mod contact_model;
 mod evaluation;
 pub mod friction;
 pub mod integration;
+mod left_by_faces;
 mod plan;
 pub mod potential;
 pub mod reference;

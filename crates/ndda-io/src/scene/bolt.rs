@@ -50,9 +50,9 @@ pub struct Bolt {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub enum BoltPlace {
-    /// One bolt; it begins where it first meets a block.
+    /// One bolt; what of it lies in front of the first block holds nothing.
     Line {
-        /// Head [m].
+        /// Head [m], on a face or in front of it: lengths from the head count from this point.
         from_m: [f64; 3],
         /// End [m].
         to_m: [f64; 3],
@@ -103,7 +103,8 @@ pub struct BoltGrout {
     pub stiffness_n_m2: f64,
     /// Largest shear force per length of bolt, s_b = π D τ of a borehole of diameter D and a bond of strength τ [N/m].
     pub strength_n_m: f64,
-    /// Where the bonded length begins, from the head [m]; the bolt is free before it. Default: at the head.
+    /// Where the bonded length begins, from the head [m]; the bolt is free before it. The head is the point `from_m` of a `Line`, also where that lies in front of the rock,
+    /// and of `Rows` the point where the bolt meets it. Default: at the head.
     #[serde(default)]
     pub from_m: f64,
     /// Where it ends, from the head [m]. Default: at the end.

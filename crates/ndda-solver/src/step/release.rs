@@ -45,7 +45,7 @@ impl Release {
 pub(super) struct ContactNow {
     force: Vec<Vec3>,
     friction: Vec<Vec3>,
-    facets: Vec<FacetContact>,
+    pub(super) facets: Vec<FacetContact>,
 }
 
 impl Simulation {

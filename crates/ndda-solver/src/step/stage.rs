@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use ndda_contact::ContactInput;
+use ndda_contact::{ContactInput, FacetContact};
 use ndda_mesh::{BlockId, Vec3};
 
 use crate::bodies::kind::BodyKind;
@@ -13,6 +13,7 @@ use crate::error::StepError;
 use crate::step::Simulation;
 use crate::step::change::TakeOverError;
 use crate::step::follower::Places;
+use crate::step::release::ContactNow;
 use crate::step::snapshot::Snapshot;
 use crate::step::stage_state::StageState;
 use crate::step::state::State;
@@ -104,10 +105,10 @@ impl Simulation {
         let mut removed_j = self.energy_of(before, &released)?;
         let contact = before.contact_now()?;
         let snapshot = before.snapshot();
-        self.enter(before, snapshot.clone(), (&released, &added), start)?;
+        self.enter((before, &contact), snapshot.clone(), (&released, &added), start)?;
         let rest = self.contact_now()?;
         // Undoes what this evaluation of contact has changed.
-        self.enter(before, snapshot, (&released, &added), start)?;
+        self.enter((before, &contact), snapshot, (&released, &added), start)?;
         self.stop_held_nodes(before);
         if start.over_s > 0.0 {
             let pairs = before.contact_between(&contact, &released);
@@ -132,7 +133,7 @@ impl Simulation {
     /// Takes over the state of the simulation before, with its blocks and bolts in their new places.
     fn enter(
         &mut self,
-        before: &mut Self,
+        (before, contact): (&mut Self, &ContactNow),
         snapshot: Snapshot,
         changed: (&[BlockId], &[BlockId]),
         start: &StageStart,
@@ -140,7 +141,7 @@ impl Simulation {
         self.restore(snapshot)?;
         self.change_places(before, changed, start);
         self.install_bolts(before);
-        Ok(self.take_over_contact(before)?)
+        Ok(self.take_over_contact(before, &contact.facets)?)
     }
 
     /// Blocks that are absent now and were absent before as asked for.
@@ -191,7 +192,7 @@ impl Simulation {
     }
 
     /// Takes over what contact remembers, under the laws of this stage.
-    fn take_over_contact(&mut self, before: &Self) -> Result<(), StepError> {
+    fn take_over_contact(&mut self, before: &Self, carried: &[FacetContact]) -> Result<(), StepError> {
         let time_s = self.time_s();
         let (Some(model), Some(old)) = (&mut self.contact, &before.contact) else { return Ok(()) };
         let State { position, velocity, contact, .. } = &mut self.state;
@@ -199,7 +200,7 @@ impl Simulation {
             affine: &self.problem.affine,
             ..ContactInput::new(&self.problem.blocks, position, velocity, self.part_s)
         };
-        let taken = model.take_over(&input, &**old, contact);
+        let taken = model.take_over(&input, (&**old, carried), contact);
         taken.map_err(|source| StepError::of_contact(time_s, source))
     }
 

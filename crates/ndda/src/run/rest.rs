@@ -41,8 +41,11 @@ impl fmt::Display for Resting<'_> {
             _ if left <= until => {
                 write!(f, "settled in {steps} steps")?;
                 if overloaded_bonds > 0 {
-                    let bonds = counted(overloaded_bonds, "bond of a joint", "bonds of joints");
-                    write!(f, ", {bonds} carried more than their strength at rest and were let go")?;
+                    let points = counted(overloaded_bonds, "point", "points");
+                    write!(
+                        f,
+                        ", at {points} joints carried more at rest than friction, and what they have of cohesion and tensile strength, can bear, and were let go"
+                    )?;
                 }
                 return match inertia_factors {
                     Some([least, most]) => {

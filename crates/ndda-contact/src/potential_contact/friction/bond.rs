@@ -21,7 +21,7 @@ use crate::friction::bond_overload::{damage, overload};
 use crate::friction::bonds_of_facet::{self, Key, key};
 use crate::friction::law::{FrictionLaw, facet_basis};
 use crate::friction::law_table::FrictionLawTable;
-use crate::friction::stretch::Stretch;
+use crate::friction::stretch::{Stretch, set_slip};
 use crate::integration::integrals::Integrals;
 use crate::model::{Bond, ContactHistory, ContactInput, ContactOutput, FacetContact, FacetMemory};
 use crate::pair_stiffness::PairStiffness;
@@ -58,11 +58,7 @@ pub(crate) fn break_overloaded(
             continue;
         }
         let wanted = key(blocks, joints.memory, &bonds[place]);
-        let touch = touching.binary_search_by_key(&wanted, |touch| {
-            // With memory per element, all hits of a facet are in one.
-            let element = wanted.2.map(|_| integrals.overlaps_of(touch)[0].tet);
-            (touch.triangle, touch.target, element)
-        });
+        let touch = integrals.place_of(&wanted);
         let pressed_n = touch.map_or(0.0, |t| {
             let weights = integrals.sums_of(&touching[t]).weights;
             let facet = (blocks, joints.memory, wanted);
@@ -81,9 +77,8 @@ pub(crate) fn break_overloaded(
         let stretch = Stretch::of(input, bond);
         bond.damage = 1.0;
         opened = true;
-        if let (Some(law), true) = (law, touch.is_ok()) {
-            let is_first = bonds_of_facet::opened(&bonds, (blocks, joints.memory, wanted)) == 1;
-            hand_over(wanted, &stretch, (law, slip_m, is_first), input, history);
+        if let (Some(law), true) = (law, touch.is_some()) {
+            hand_over(wanted, (&stretch, &stretch.shear_n(law)), (law, slip_m), input, history);
         }
     }
     if opened {
@@ -93,16 +88,15 @@ pub(crate) fn break_overloaded(
     (largest, held)
 }
 
-/// Makes the shear of a bond that breaks the friction that its facet remembers; the law then limits it.
-fn hand_over(
+/// Makes shear of a bond, which it carries no longer, a part of the friction that its facet remembers; the law then limits it.
+pub(crate) fn hand_over(
     (facet, target, element): Key,
-    stretch: &Stretch,
-    (law, slip_m, is_first): (&dyn FrictionLaw, f64, bool),
+    (stretch, shear): (&Stretch, &Vec3),
+    (law, slip_m): (&dyn FrictionLaw, f64),
     input: &ContactInput,
     history: &mut ContactHistory,
 ) {
     let basis = facet_basis(&input.blocks.triangle_corners(facet, input.position), &stretch.normal);
-    let shear = stretch.shear_n(law);
     let memory = FacetMemory {
         twist_n_m: 0.0,
         facet,
@@ -122,15 +116,12 @@ fn hand_over(
             known.shear_n = [0, 1].map(|i| known.shear_n[i] + memory.shear_n[i]);
             known.broken |= memory.broken;
         }
-        Err(place) => history.insert(place, memory),
+        Err(place) => {
+            history.insert(place, memory);
+            law.begin(&mut history.state_of_mut(place)[..law.state_len()]);
+        }
     };
-    let state = &mut history.state_of_mut(place)[..law.state_len()];
-    if is_first {
-        law.begin(state);
-    }
-    if slip_m > 0.0 {
-        state[0] = slip_m;
-    }
+    set_slip(law, &mut history.state_of_mut(place)[..law.state_len()], slip_m);
 }
 
 /// Force of an unbroken bond on its facet; its target feels the opposite.

@@ -27,7 +27,7 @@ pub(super) fn overload(
 }
 
 /// Damages a bond by how far it is stretched. Gives its overload where it breaks at once.
-pub(super) fn damage(bond: &mut Bond, fracture: &Fracture, input: &ContactInput) -> f64 {
+pub(crate) fn damage(bond: &mut Bond, fracture: &Fracture, input: &ContactInput) -> f64 {
     let (opening_m, slip_m) = Stretch::of(input, bond).beyond_rounding_m();
     let reached = fracture.damage(opening_m, slip_m);
     let at_once = bond.damage == 0.0 && reached >= 1.0;

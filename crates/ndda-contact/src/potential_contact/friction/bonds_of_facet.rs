@@ -73,11 +73,6 @@ pub(crate) fn left_to_friction(
     [pressure.max(0.0), free_m2.max(0.0)]
 }
 
-/// How many bonds of a facet have opened.
-pub(crate) fn opened(bonds: &[Bond], facet: (&BlockSet, Memory, Key)) -> usize {
-    of_facet(bonds, facet).filter(|bond| bond.damage >= 1.0).count()
-}
-
 /// Drops the bonds of facets on which none holds any more.
 pub(crate) fn forget_opened(bonds: &mut Vec<Bond>, blocks: &BlockSet, memory: Memory) {
     let (mut start, mut kept) = (0, 0);

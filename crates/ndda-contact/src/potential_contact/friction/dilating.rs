@@ -66,6 +66,12 @@ impl FrictionLaw for Dilating {
         self.law.state_len() + KEPT
     }
 
+    fn state_parts(&self) -> Vec<(&'static str, usize)> {
+        let mut parts = self.law.state_parts();
+        parts.push(("slip and opening of a joint that dilates", KEPT));
+        parts
+    }
+
     fn begin(&self, state: &mut [f64]) {
         let (within, own) = state.split_at_mut(self.law.state_len());
         self.law.begin(within);

@@ -55,6 +55,12 @@ pub trait FrictionLaw: Send + Sync {
         0
     }
 
+    /// What these numbers mean, in their order, with how many there are of each meaning: where another law takes over, numbers of the same meaning go on, and the
+    /// others begin anew.
+    fn state_parts(&self) -> Vec<(&'static str, usize)> {
+        vec![(self.name(), self.state_len())]
+    }
+
     /// Sets the law's own numbers where a contact begins; zeros unless a law says otherwise.
     fn begin(&self, state: &mut [f64]) {
         state.fill(0.0);
@@ -82,7 +88,7 @@ pub trait FrictionLaw: Send + Sync {
         false
     }
 
-    /// Whether a facet whose bond breaks keeps the strength that it has, and softens from there.
+    /// Whether a facet whose bond breaks keeps the strength that it has, and softens from there. The first of such a law's own numbers is the plastic slip [m].
     fn survives_slip(&self) -> bool {
         false
     }

@@ -91,14 +91,13 @@ impl Stretch {
     ) -> ShearMemory<'a> {
         state.resize(law.state_len(), 0.0);
         law.begin(state);
-        if slip_m > 0.0 {
-            state[0] = slip_m;
-        }
+        set_slip(law, state, slip_m);
         ShearMemory { broken: false, state, ..ShearMemory::default() }
     }
 
-    /// By how much the joint's strength is exceeded, over its strength under the present normal stress or without any, whichever is more, and
-    /// 0 of a joint that has neither; none while it holds: k_b δ ≤ σ_t and |k_s s| ≤ max(0, c + σ tan φ), to rounding.
+    /// By how much the joint's strength is exceeded, over its strength under the present normal stress or without any, whichever is more; none while it holds:
+    /// k_b δ ≤ σ_t and |k_s s| ≤ max(0, c + σ tan φ), to rounding. It is 0 where neither cohesion nor tensile strength is left: friction, which is all that there is,
+    /// goes on unchanged when such a bond breaks, so that it does not matter when.
     pub(crate) fn overload(
         &self,
         law: &dyn FrictionLaw,
@@ -115,8 +114,17 @@ impl Stretch {
         let present_n = capacity_n(pressed_n - self.tension_n(law));
         let tensile_n = (tensile_pa - tension_pa) * self.half_area;
         let excess_n = tensile_n.max(self.shear_n(law).norm() - present_n - rounding_n);
-        let strength_n = present_n.max(capacity_n(0.0)).max(tension_pa * self.half_area);
-        (excess_n > 0.0).then(|| if strength_n > 0.0 { excess_n / strength_n } else { 0.0 })
+        let without_friction_n = capacity_n(0.0).max(tension_pa * self.half_area);
+        let part =
+            || if without_friction_n > 0.0 { excess_n / present_n.max(without_friction_n) } else { 0.0 };
+        (excess_n > 0.0).then(part)
+    }
+}
+
+/// Sets the plastic slip of a bond [m] in the numbers of a law that softens by it; other laws have no such number.
+pub(crate) fn set_slip(law: &dyn FrictionLaw, state: &mut [f64], slip_m: f64) {
+    if let (true, Some(first)) = (slip_m > 0.0 && law.survives_slip(), state.first_mut()) {
+        *first = slip_m;
     }
 }
 

@@ -354,6 +354,16 @@ impl Integrals {
         &self.touching
     }
 
+    /// Place among them of a facet with its target and, with memory per element, the element.
+    pub(crate) fn place_of(&self, wanted: &(TriangleId, BlockId, Option<TetId>)) -> Option<usize> {
+        let key = |touch: &ActiveFacet| {
+            // With memory per element, all hits of a facet are in one.
+            let element = wanted.2.map(|_| self.overlaps_of(touch)[0].tet);
+            (touch.triangle, touch.target, element)
+        };
+        self.touching.binary_search_by_key(wanted, key).ok()
+    }
+
     /// The hits of a facet that touches, in the order of pairs.
     pub fn overlaps_of(&self, touch: &ActiveFacet) -> &[OverlapPair] {
         let [start, end] = touch.overlaps.map(|k| k as usize);
