@@ -86,6 +86,7 @@ fn entries(simulation: &Simulation) -> Vec<Entry> {
     entries.push(friction(simulation));
     entries.extend(friction_search(simulation));
     entries.extend(drawn_overlaps(simulation));
+    entries.extend(unsettled(simulation));
     entries.extend(creep(simulation));
     entries.push(hops(simulation));
     entries.extend(chatter(simulation));
@@ -212,6 +213,21 @@ fn spurious_contact_energy(simulation: &Simulation) -> Entry {
     let worst = simulation.invariants();
     let (gain, loss) = (worst.block_gain, worst.block_loss);
     let (what, most) = if gain.value >= loss.value { ("added", gain) } else { ("removed", loss) };
+/// Whether settling has left a block far from rest; said only where it has.
+fn unsettled(simulation: &Simulation) -> Option<Entry> {
+    let found = simulation.invariants().unsettled;
+    let part = found.over(simulation.largest_speed_m_s());
+    let reason = format!(
+        "the scene has settled but block `{}` has not: it sets off at about {:.1e} m/s, {:.0} times what an accurate label allows; divide the tolerance of settle by {:.0}",
+        simulation.blocks().names[found.block as usize],
+        found.speed_m_s,
+        part / SPEED,
+        10f64.powf((part / SPEED).log10().ceil())
+    );
+    (part > SPEED)
+        .then(|| warned("speed that settling leaves to a block / its largest speed", part, SPEED, reason))
+}
+
     let reason = format!(
         "contact {what} {:.1} % spurious energy at block `{}`, limit {:.0} %: its velocity may be wrong by {:.1} % of the largest; reduce step_s",
         100.0 * most.value,

@@ -52,6 +52,12 @@ const IMPACT: f64 = 0.05;
 
 /// Steps times boundary triangles of a run that is short: it takes about a second.
 const SHORT: u64 = 2_000_000;
+/// Part of the largest speed that contact adds to the velocity of a block in its largest impact, from which on half the step is tried where contact is damped strongly.
+const DAMPED_IMPACT: f64 = 0.02;
+/// What steps may leave of loads along the way of a block that nothing touches, at most: of its velocity over the largest speed, and of its place over the smallest height of its
+/// tetrahedra; beyond, half the step is tried. Half of what an accurate label allows, of errors that are added up without regard to their direction.
+const FREE_LOADS: (f64, f64) = (0.005, 0.05);
+
 
 /// Whether a run that begins here makes a twin, by default, if its blocks move far enough.
 pub(crate) fn may_want_twin(simulation: &Simulation) -> bool {
@@ -59,8 +65,8 @@ pub(crate) fn may_want_twin(simulation: &Simulation) -> bool {
     simulation.has_contact() && free.take(ENOUGH).count() == ENOUGH
 }
 
-/// Whether a run that begins here may make a twin with half the step, by default: always without contact, with friction or a scheme of first order if it is short, else if a
-/// block hits several times.
+/// Whether a run that begins here may make a twin with half the step, by default: always without contact, with friction or a scheme of first order if it is short, else
+/// where [`may_err`] finds a reason.
 pub(crate) fn may_want_half_step(simulation: &Simulation) -> bool {
     let may_move = |block| match simulation.has_contact() {
         true => moves(simulation, block),
@@ -90,7 +96,7 @@ pub(crate) fn twins(asked: Sensitivity, simulation: &Simulation) -> Vec<Twin> {
         }
         Sensitivity::Auto => {
             let moved: Vec<BlockId> = moved().take(ENOUGH).collect();
-            let halves = hits_again(simulation) || always_halves(simulation, simulation.state().step);
+            let halves = may_err(simulation) || always_halves(simulation, simulation.state().step);
             (moved.len() == ENOUGH || lie_together(simulation, &moved) || hops, halves)
         }
     };
@@ -112,6 +118,12 @@ pub(crate) fn told(twins: &[Twin], simulation: &Simulation) -> String {
         (false, _) if hits_again(simulation) => "half the step, since blocks have hit several times".into(),
         (false, _) => "half the step".into(),
     };
+        (false, _) if hits_damped(simulation) => {
+            "half the step, since blocks that deform have hit on contact with a restitution below 0.6".into()
+        }
+        (false, _) if simulation.has_contact() && free_loads(simulation) => {
+            "half the step, since loads change along the way of a block that nothing touches".into()
+        }
     format!(
         "running the scene again with {by}, to see whether the result changes (`--sensitivity never` skips this)"
     )
@@ -319,6 +331,28 @@ pub(crate) fn always_halves(simulation: &Simulation, steps: u64) -> bool {
 /// Whether a block has hit several times.
 pub(crate) fn hits_again(simulation: &Simulation) -> bool {
     simulation.invariants().second_impact.value >= IMPACT
+}
+
+/// Whether a run may be off though each of its steps passes: a block has hit several times, or on strongly damped contact, or its loads have changed along its way.
+fn may_err(simulation: &Simulation) -> bool {
+    hits_again(simulation) || hits_damped(simulation) || free_loads(simulation)
+}
+
+/// Whether a block has hit where contact is damped strongly and blocks deform.
+pub(crate) fn hits_damped(simulation: &Simulation) -> bool {
+    simulation.damps_strongly() && simulation.invariants().impact.value >= DAMPED_IMPACT
+}
+
+/// Whether loads have changed along the way of a block that nothing touches by more than steps resolve for sure.
+fn free_loads(simulation: &Simulation) -> bool {
+    let worst = simulation.invariants();
+    worst.free_speed.value > FREE_LOADS.0 || worst.free_place.value > FREE_LOADS.1
+}
+
+/// The same of one block.
+fn has_free_loads(simulation: &Simulation, block: BlockId) -> bool {
+    let (speed, place) = simulation.free_load_errors(block);
+    speed > FREE_LOADS.0 || place > FREE_LOADS.1
 }
 
 /// Whether a block moves as forces ask.
