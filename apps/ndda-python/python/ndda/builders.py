@@ -3698,6 +3698,9 @@ class Shape:
     class Sphere(Builder):
         """A sphere about the origin, of 8^(levels + 1) tetrahedra.
 
+        In contact with `Smooth` or `Closure`, which take at most 13 faces beside a tetrahedron, `levels` is
+        at most 1; with `Element` and `Volume`, there may be more.
+
         Parameters
         ----------
         radius_m : float

@@ -188,6 +188,13 @@ impl Simulation {
         self.contact.as_ref().is_some_and(|model| model.has_friction())
     }
 
+    /// Whether the scheme takes reactions at one instant for their mean over a step where that is not so: with damping in proportion to stiffness, and where supports move. What
+    /// momentum blocks have then differs from the impulses that are booked.
+    pub fn books_reactions_at_one_instant(&self) -> bool {
+        let changes = |shape: &Prototype| shape.damping.stiffness > 0.0 || !shape.supports.motions.is_empty();
+        !self.weights.forces_do_their_work() && self.problem.shapes.iter().any(changes)
+    }
+
     /// Whether errors of steps without contact fall with the square of the step.
     pub fn is_of_second_order(&self) -> bool {
         self.weights.elastic_lag() == 0.0

@@ -39,6 +39,11 @@ pub(crate) fn wet_places(blocks: &BlockSet, on: &Wet) -> Option<Vec<Vec3>> {
     Some(corners.collect()).filter(|corners: &Vec<Vec3>| !corners.is_empty())
 }
 
+/// Blocks with wet faces.
+pub(crate) fn wet_blocks(blocks: &BlockSet, on: &Wet) -> impl Iterator<Item = BlockId> {
+    wet(blocks, on).into_iter().flatten().map(|(block, _)| block)
+}
+
 fn wet(blocks: &BlockSet, on: &Wet) -> Result<Vec<Faces>, String> {
     match on {
         Wet::Joint(pattern) => {

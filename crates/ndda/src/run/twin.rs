@@ -4,6 +4,7 @@
 //! sensitive: in heaps, falling columns, toppling slopes, and where a block hops on contact that is not damped. One with half the step does where the errors
 //! of impacts have grown in the next ones.
 
+mod failed;
 mod parted;
 mod through_stages;
 
@@ -23,6 +24,7 @@ use ndda_solver::{BodyKind, Settle, Simulation, StartSnapshot, StepError};
 use super::unless_ended;
 use crate::judge::words::SECOND_RUN;
 use crate::summary::{Label, LabelWord, Status, Summary};
+use failed::Failed;
 pub(super) use parted::Parted;
 use parted::{farthest_m, height_m, parted};
 
@@ -50,14 +52,14 @@ const HOPS: f64 = 8.0;
 /// Part of the largest speed that contact adds to the velocity of a block in its second largest impact, from which on half the step is tried.
 const IMPACT: f64 = 0.05;
 
-/// Steps times boundary triangles of a run that is short: it takes about a second.
-const SHORT: u64 = 2_000_000;
 /// Part of the largest speed that contact adds to the velocity of a block in its largest impact, from which on half the step is tried where contact is damped strongly.
 const DAMPED_IMPACT: f64 = 0.02;
 /// What steps may leave of loads along the way of a block that nothing touches, at most: of its velocity over the largest speed, and of its place over the smallest height of its
 /// tetrahedra; beyond, half the step is tried. Half of what an accurate label allows, of errors that are added up without regard to their direction.
 const FREE_LOADS: (f64, f64) = (0.005, 0.05);
 
+/// Steps times boundary triangles of a run that is short: it takes about a second.
+const SHORT: u64 = 2_000_000;
 
 /// Whether a run that begins here makes a twin, by default, if its blocks move far enough.
 pub(crate) fn may_want_twin(simulation: &Simulation) -> bool {
@@ -116,14 +118,14 @@ pub(crate) fn told(twins: &[Twin], simulation: &Simulation) -> String {
         (true, true) => format!("{pushed}, then with half the step"),
         (true, false) => pushed.into(),
         (false, _) if hits_again(simulation) => "half the step, since blocks have hit several times".into(),
-        (false, _) => "half the step".into(),
-    };
         (false, _) if hits_damped(simulation) => {
             "half the step, since blocks that deform have hit on contact with a restitution below 0.6".into()
         }
         (false, _) if simulation.has_contact() && free_loads(simulation) => {
             "half the step, since loads change along the way of a block that nothing touches".into()
         }
+        (false, _) => "half the step".into(),
+    };
     format!(
         "running the scene again with {by}, to see whether the result changes (`--sensitivity never` skips this)"
     )
@@ -189,10 +191,7 @@ pub(crate) fn label_of_twins(
         Ok(ControlFlow::Break(())) => return ControlFlow::Break(interrupted(twins)),
         Ok(ControlFlow::Continue(None)) => return ControlFlow::Continue(None),
         Ok(ControlFlow::Continue(Some(parted))) => (parted.word(), parted.to_string()),
-        Err(error) => (
-            LabelWord::Sensitive,
-            format!("a second run, whose start or step differs a little, stops {error}"),
-        ),
+        Err((twin, failed)) => (failed.word(twin), failed.reason(twin)),
     };
     ControlFlow::Continue(Some(Label { word, reasons: vec![reason] }))
 }
@@ -212,13 +211,13 @@ fn interrupted(twins: &[Twin]) -> Label {
 /// Runs twins of a simulation that has come to its end. None where all stay together; broken off where somebody asks to end before that is known.
 ///
 /// # Errors
-/// The message of the error that stops a twin.
+/// The twin that has no end, and why.
 fn part(
     simulation: &mut Simulation,
     again: &Again,
     twins: &[Twin],
     stop: &AtomicBool,
-) -> Result<ControlFlow<(), Option<Parted>>, String> {
+) -> Result<ControlFlow<(), Option<Parted>>, (Twin, Failed)> {
     // A twin through stages is pushed at the beginning of each.
     let pushes = match again {
         Again::FromStart { .. } => 1,
@@ -233,11 +232,12 @@ fn part(
         let ended = match again {
             Again::FromStart { start, settle } => {
                 from_start(simulation, (start, settle.as_ref()), twin, stop)
-                    .map_err(|error| error.to_string())?
+                    .map_err(|error| (twin, error.into()))?
             }
             Again::ThroughStages { loaded, folder, stop } => {
                 let ranks = simulation.ranks().clone();
-                through_stages::ended((loaded, folder), (twin, scale_m_s), ranks, stop)?
+                through_stages::ended((loaded, folder), (twin, scale_m_s), ranks, stop)
+                    .map_err(|failed| (twin, failed))?
             }
         };
         let Some(ended) = ended else { return Ok(ControlFlow::Break(())) };
