@@ -304,7 +304,7 @@ pub struct HowArgs {
     #[arg(long)]
     pub strict: bool,
     /// After an accurate run, run the scene again, from a slightly different start or with half the step, to see whether the result changes: auto (where
-    /// several blocks move, one hops or hits several times, nothing can touch, or the run was short), always or never. It takes as long, or twice as long [default: auto; resume: as it began].
+    /// several blocks move, one hops or hits several times or on strongly damped contact, loads change along the way of one, nothing can touch, or the run was short), always or never. It takes as long, or twice as long [default: auto; resume: as it began].
     #[arg(long, value_name = "WHEN")]
     pub sensitivity: Option<Sensitivity>,
     /// Print nothing but errors.

@@ -22,6 +22,11 @@ pub trait ContactAudit {
         false
     }
 
+    /// Whether a contact has a restitution below 0.6.
+    fn damps_strongly(&self) -> bool {
+        false
+    }
+
     /// Work of contact damping of the last [`add_forces`](crate::ContactModel::add_forces), at these positions, over displacements of the nodes [m]: blocks and work [J], one
     /// call for each facet that it acts on, always in the same order. It is no part of [`each_work`](Self::each_work).
     fn each_damping_work(

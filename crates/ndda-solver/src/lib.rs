@@ -118,3 +118,4 @@ pub use step::stage::{LeaveOutError, StageStart};
 pub use step::stage_state::StageState;
 pub use step::start_snapshot::StartSnapshot;
 pub use step::state::State;
+pub use step::unsettled::Unsettled;

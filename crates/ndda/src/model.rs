@@ -102,7 +102,7 @@ impl Model {
         let monitors = build::monitors(&loaded.scene, &simulation).map_err(located)?;
         loaded.warnings.extend(far);
         loaded.warnings.extend(held::warnings(&loaded, simulation.blocks()));
-        loaded.warnings.extend(dry::warnings(&loaded, simulation.blocks()));
+        loaded.warnings.extend(dry::warnings(&loaded, &simulation));
         loaded.warnings.extend(slivers::warnings(&loaded, &rock));
         loaded.warnings.extend(lumped::warning(&loaded, &simulation));
         loaded.warnings.extend(creep::warning(&loaded));

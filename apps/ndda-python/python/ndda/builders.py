@@ -833,8 +833,9 @@ class Contact:
             Friction between all blocks. Default: none.
         restitution : float, optional
             Coefficient of restitution e of all contacts, from 0 to 1: speed at which two blocks part after a
-            central impact over that at which they met, whatever the penalty and the step. Below 1, what rings
-            comes to rest; 0 counts as 0.005. Needs `contact_at: Predicted`. Default: 1, undamped.
+            central impact over that at which they met, whatever the penalty, where the steps resolve it; near
+            0 blocks that deform part faster. Below 1, what rings comes to rest; 0 counts as 0.005. Needs
+            `contact_at: Predicted`. Default: 1, undamped.
         shear_restitution : float, optional
             Coefficient of restitution along the face, from 0 to 1: speed that half an oscillation on a shear
             spring leaves, over that before, while the spring sticks. Needs friction with
@@ -3698,6 +3699,9 @@ class Shape:
     @dataclass(kw_only=True)
     class Sphere(Builder):
         """A sphere about the origin, of 8^(levels + 1) tetrahedra.
+
+        In contact with `Smooth` or `Closure`, which take at most 13 faces beside a tetrahedron, `levels` is
+        at most 1; with `Element` and `Volume`, there may be more.
 
         Parameters
         ----------

@@ -42,6 +42,10 @@ impl ContactAudit for PotentialContact {
         self.damping.is_some()
     }
 
+    fn damps_strongly(&self) -> bool {
+        self.damping.as_ref().is_some_and(|damping| damping.is_strong())
+    }
+
     fn each_damping_work(
         &mut self,
         blocks: &BlockSet,

@@ -277,6 +277,10 @@ impl ContactAudit for BatchFriction {
         self.normal.damps()
     }
 
+    fn damps_strongly(&self) -> bool {
+        self.normal.damps_strongly()
+    }
+
     fn each_damping_work(
         &mut self,
         blocks: &BlockSet,

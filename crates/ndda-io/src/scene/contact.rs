@@ -29,7 +29,7 @@ pub enum Contact {
         #[serde(default)]
         friction: Option<Friction>,
         /// Coefficient of restitution e of all contacts, from 0 to 1: speed at which two blocks part after a central impact over that at which they met, whatever the
-        /// penalty and the step. Below 1, what rings comes to rest; 0 counts as 0.005. Needs `contact_at: Predicted`. Default: 1, undamped.
+        /// penalty, where the steps resolve it; near 0 blocks that deform part faster. Below 1, what rings comes to rest; 0 counts as 0.005. Needs `contact_at: Predicted`. Default: 1, undamped.
         #[serde(default = "one")]
         restitution: f64,
         /// Coefficient of restitution along the face, from 0 to 1: speed that half an oscillation on a shear spring leaves, over that before, while the spring sticks. Needs

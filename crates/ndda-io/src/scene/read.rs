@@ -121,8 +121,9 @@ fn is_of_places(path: &str, message: &str) -> bool {
 
 /// The cure at the end of a message, and what is before it.
 fn split_cure(message: &str) -> Option<(&str, &str)> {
-    let (problem, cure) = message.rsplit_once(": ")?;
-    CURES.iter().any(|begins| cure.starts_with(begins)).then_some((problem, cure))
+    // A cure may have a colon itself, as before the value of a field.
+    let parts = message.rmatch_indices(": ").map(|(at, _)| (&message[..at], &message[at + 2..]));
+    parts.into_iter().find(|(_, cure)| CURES.iter().any(|begins| cure.starts_with(begins)))
 }
 
 /// How cures begin.
@@ -246,6 +247,13 @@ fn with_mistakes_of_values(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_cure_may_have_a_colon_itself() {
+        let split = split_cure("depth is zero: give it an interior node, or take `potential: Element`");
+        assert_eq!(split, Some(("depth is zero", "give it an interior node, or take `potential: Element`")));
+        assert_eq!(split_cure("t: 3, 4: is no number"), None);
+    }
 
     #[test]
     fn the_picture_of_blocks_is_advised_where_it_shows_what_is_wrong() {

@@ -65,7 +65,8 @@ pub enum Shape {
         /// Rings around the axis (the outline has 6 corners per ring) and layers.
         cells: [u32; 2],
     },
-    /// A sphere about the origin, of 8^(levels + 1) tetrahedra.
+    /// A sphere about the origin, of 8^(levels + 1) tetrahedra. In contact with `Smooth` or `Closure`, which take at most 13 faces beside a tetrahedron, `levels` is at
+    /// most 1; with `Element` and `Volume`, there may be more.
     Sphere {
         /// Radius [m].
         radius_m: f64,

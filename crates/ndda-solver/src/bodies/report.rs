@@ -47,7 +47,7 @@ pub(crate) struct BlockReport {
 
 impl BlockReport {
     /// Everything in it, in one order.
-    fn parts(&mut self) -> ([&mut Vec3; 17], [&mut f64; 11], [&mut bool; 4]) {
+    fn parts(&mut self) -> ([&mut Vec3; 19], [&mut f64; 11], [&mut bool; 5]) {
         let Self {
             reaction,
             outside_torque,
@@ -81,11 +81,13 @@ impl BlockReport {
             speed_m_s: fastest_m_s,
             has_friction,
             contact_rate2: drive_rate2,
+            is_free,
+            free_m_s2: [free_shift, free_turn],
         } = drive;
         let of_block = [reaction, outside_torque, motion_impulse, orbital_impulse, impulse, impulse_moment];
         let of_parts = [
             shift_m_s, turn_m_s, force, torque, contact, carried, lag, load_m_s2, shift_m_s2, damped_m_s,
-            turn_m_s2,
+            turn_m_s2, free_shift, free_turn,
         ];
         let mut vectors = of_block.into_iter().chain(of_parts);
         let numbers = [
@@ -101,8 +103,8 @@ impl BlockReport {
             fastest_m_s,
             drive_rate2,
         ];
-        let vectors = std::array::from_fn(|_| vectors.next().expect("seventeen of them"));
-        (vectors, numbers, [is_held, is_clamped, touches, has_friction])
+        let vectors = std::array::from_fn(|_| vectors.next().expect("nineteen of them"));
+        (vectors, numbers, [is_held, is_clamped, touches, has_friction, is_free])
     }
 
     /// Hands it to another rank.
@@ -156,6 +158,10 @@ pub(crate) struct RigidForcing {
     pub has_friction: bool,
     /// A bound of ω_c² of its contact [1/s²].
     pub contact_rate2: f64,
+    /// Whether neither contact nor supports act on it, and its accelerations then: of its mass centre, and of its rotation times its radius [m/s²]. All
+    /// else of its forcing is zero then.
+    pub is_free: bool,
+    pub free_m_s2: [Vec3; 2],
 }
 
 /// Velocity that forces of unknown direction give a block [m/s].

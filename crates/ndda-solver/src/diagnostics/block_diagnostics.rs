@@ -17,6 +17,7 @@ use serde::{Deserialize, Serialize};
 use crate::bodies::report::LateralDrift;
 use crate::bodies::report::RigidForcing;
 use crate::diagnostics::creep::CreepDiagnostics;
+use crate::diagnostics::free_loads::FreeLoads;
 use crate::diagnostics::hops::Hops;
 use crate::diagnostics::kept_turn::KeptTurn;
 use crate::diagnostics::many::each_of_many;
@@ -72,6 +73,7 @@ struct BlockBalance {
     ringing: Ringing,
     hops: Hops,
     rebound: Rebound,
+    free_loads: FreeLoads,
 }
 
 /// Energy balances and diagnostics of all blocks.
@@ -269,6 +271,7 @@ impl BlockDiagnostics {
             let drive = drive_of(block);
             balance.ringing.add(step, drive);
             balance.hops.add(step.dt_s, drive);
+            balance.free_loads.add(step, drive);
             balance.rebound.add(step.dt_s, drive, scales[block].deforms);
         });
     }

@@ -125,6 +125,11 @@ impl Hops {
         }
     }
 
+    /// The largest impact, as the velocity that contact added \[m/s\].
+    pub(crate) fn impact_m_s(&self) -> f64 {
+        if self.touched { self.impacts_with_this_touch_m_s()[0] } else { self.impacts_m_s[0] }
+    }
+
     /// The second largest impact, as the velocity that contact added \[m/s\]; 0 where there was one or none.
     pub(crate) fn second_impact_m_s(&self) -> f64 {
         let all = if self.touched { self.impacts_with_this_touch_m_s() } else { self.impacts_m_s };

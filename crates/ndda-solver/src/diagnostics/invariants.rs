@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::diagnostics::worst::Worst;
 use crate::step::report::StepCounts;
+use crate::step::unsettled::Unsettled;
 
 /// The worst values of a run so far; the limits are those of the summary.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -35,6 +36,8 @@ pub struct Invariants {
     pub friction_left_m_s: f64,
     /// Largest speed at which overlaps as drawn throw a block [m/s].
     pub drawn_overlap_m_s: Worst,
+    /// Block that settling has left farthest from rest, by its own measure.
+    pub unsettled: Unsettled,
     /// penetration over tet height.
     pub max_penetration_ratio: f64,
     /// by how much the strength of a bond was exceeded where one broke, over its strength under its normal stress or without any, whichever is
@@ -56,6 +59,12 @@ pub struct Invariants {
     pub hops_with_friction: Worst,
     /// Second largest impact of a block: velocity that contact added, less that which bears its loads, over the largest speed.
     pub second_impact: Worst,
+    /// Largest impact of a block, likewise.
+    pub impact: Worst,
+    /// Most that steps may have left of loads that change along the way of a block which nothing touches: of its velocity, over the largest speed.
+    pub free_speed: Worst,
+    /// Of its place, over the smallest tet height of its block.
+    pub free_place: Worst,
     /// Speed that a sliding block gained while its contact rebounded, over the largest speed.
     pub rebound_speed: Worst,
     /// Speed that a block which deforms gained while its contact rebounded, found from the impulse of contact, over the largest speed; holds on one plane only.

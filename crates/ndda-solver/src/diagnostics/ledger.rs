@@ -14,6 +14,7 @@ use crate::diagnostics::block_diagnostics::BlockDiagnostics;
 use crate::diagnostics::worst::Worst;
 use crate::integrators::time_integrator::StepWeights;
 use crate::step::report::StepReport;
+use crate::step::unsettled::Unsettled;
 
 /// Strain below which the search is skipped: a tenth of the limit of a linear law.
 const LITTLE_STRAIN: f64 = 1e-2;
@@ -195,6 +196,18 @@ impl Ledger {
         self.blocks.rest_speed_m_s(block)
     }
 
+    /// Most that steps may have left of loads along the way of a block: of its velocity over the speed scale, and of its place over its smallest height.
+    pub(crate) fn free_load_errors(&self, block: BlockId) -> (f64, f64) {
+        self.blocks.free_loads_of(block, self.speed_scale_m_s())
+    }
+
+    /// Keeps the block that settling has left farthest from rest.
+    pub(crate) fn note_unsettled(&mut self, found: Unsettled) {
+        if found.over(0.0) > self.worst.unsettled.over(0.0) {
+            self.worst.unsettled = found;
+        }
+    }
+
     /// Keeps the largest speed at which overlaps as drawn throw a block [m/s].
     pub(crate) fn note_drawn_overlaps(&mut self, thrown: Worst) {
         self.worst.drawn_overlap_m_s = thrown;
@@ -324,6 +337,7 @@ impl Ledger {
         let (creep_speed, creep_place) = self.blocks.creep(scale_m_s);
         let (growing_hops, chattering_hops) = self.blocks.hops(self.largest_speed_m_s, self.rounding_j);
         let (rebound_speed, rebound_speed_on_a_plane) = self.blocks.rebound(scale_m_s, self.rounding_j);
+        let (free_speed, free_place) = self.blocks.free_loads(scale_m_s, self.rounding_j);
         let (lumped_speed, lumped_place) = self.blocks.lumped(scale_m_s, self.rounding_j);
         let speed = |value_m_s: f64| over(value_m_s, self.largest_speed_m_s.max(value_m_s));
         Invariants {
@@ -346,6 +360,9 @@ impl Ledger {
             chattering_hops,
             hops_with_friction: self.blocks.hops_with_friction(self.largest_speed_m_s, self.rounding_j),
             second_impact: self.blocks.second_impact(scale_m_s, self.rounding_j),
+            impact: self.blocks.impact(scale_m_s, self.rounding_j),
+            free_speed,
+            free_place,
             rebound_speed,
             rebound_speed_on_a_plane,
             lumped_speed,

@@ -4,6 +4,7 @@ pub(crate) mod block_diagnostics;
 pub(crate) mod block_sums;
 pub(crate) mod creep;
 pub(crate) mod energies;
+pub(crate) mod free_loads;
 pub(crate) mod hops;
 pub(crate) mod invariants;
 pub(crate) mod kept_turn;

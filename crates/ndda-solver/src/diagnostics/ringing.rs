@@ -52,13 +52,7 @@ impl RigidForcing {
         report: &BlockReport,
     ) -> Self {
         let touches = report.contact_rate2 > 0.0;
-        let is_held = shape.kind != BodyKind::Fixed && (touches || !shape.is_free());
-        if !is_held {
-            return Self::default();
-        }
         let operator = &shape.operator;
-        let load: Vec3 = context.external.iter().sum();
-        let force = context.force.iter().sum::<Vec3>() + report.reaction;
         let mut turn_m_s2 = Vec3::zeros();
         if shape.is_free() {
             let center = operator.center(context.contact_position);
@@ -66,6 +60,16 @@ impl RigidForcing {
             let torque: Vec3 = arms.map(|(x, f)| (x - center).cross(f)).sum();
             turn_m_s2 = rotation * (shape.turn_per_n_m * rotation.tr_mul(&torque));
         }
+        if !touches && shape.is_free() {
+            let free_m_s2 = [context.force.iter().sum::<Vec3>() / operator.mass_kg, turn_m_s2];
+            return Self { is_free: true, free_m_s2, ..Self::default() };
+        }
+        let is_held = shape.kind != BodyKind::Fixed;
+        if !is_held {
+            return Self::default();
+        }
+        let load: Vec3 = context.external.iter().sum();
+        let force = context.force.iter().sum::<Vec3>() + report.reaction;
         let deforms = shape.deforms();
         let mut pressed_n = 0.0;
         if touches && deforms && !context.weights.contact_in_the_middle() {
@@ -84,6 +88,7 @@ impl RigidForcing {
             speed_m_s: report.speed_m_s,
             has_friction: context.friction_force.iter().any(|f| *f != Vec3::zeros()),
             contact_rate2: report.contact_rate2,
+            ..Self::default()
         }
     }
 }

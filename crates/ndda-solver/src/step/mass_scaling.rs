@@ -175,6 +175,13 @@ impl Simulation {
         self.scratch.scaled_masses.as_ref().map_or(1.0, |masses| masses.factor[block.index()])
     }
 
+    /// Factor on the inertia of a block, that of its shape included.
+    pub(super) fn whole_inertia_factor(&self, block: BlockId) -> f64 {
+        let masses = self.scratch.scaled_masses.as_ref();
+        let of_shape = masses.map_or(1.0, |masses| masses.of_shapes[self.bodies[block.index()].shape]);
+        of_shape * self.inertia_factor(block)
+    }
+
     /// Brings inertia to the contacts of the step and divides forces by the factors on it: with its own inertia, a block then moves as it would with the other.
     pub(super) fn scale_forces(&mut self) {
         let Some(mut masses) = self.scratch.scaled_masses.take() else { return };

@@ -44,6 +44,7 @@ pub(crate) mod state;
 #[cfg(test)]
 pub(crate) mod test_boxes;
 pub(crate) mod travel;
+pub(crate) mod unsettled;
 
 use crate::step::account::StageWatch;
 use crate::step::report::StageTimes;

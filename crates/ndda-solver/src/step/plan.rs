@@ -201,7 +201,7 @@ impl Simulation {
         parts.push(Part::of(
             "rigid motion of blocks for contact",
             model.needs_bodies(),
-            "friction on velocities needs it",
+            "friction on velocities or contact damping needs it",
             "no law needs it",
         ));
         parts

@@ -98,6 +98,18 @@ impl Simulation {
         self.contact.as_ref().is_some_and(|model| model.damps())
     }
 
+    /// Whether contact takes much of the energy of impacts, by a restitution below 0.6, and blocks deform in it: their surfaces part from a stiff damper, which steps resolve slowly.
+    pub fn damps_strongly(&self) -> bool {
+        let strongly = self.contact.as_ref().is_some_and(|model| model.damps_strongly());
+        strongly && self.problem.shapes.iter().any(|shape| shape.deforms())
+    }
+
+    /// Most that steps may have left of loads that change along the way of a block while nothing touches it: of its velocity, over the speed scale, and of its place, over the smallest
+    /// height of its tetrahedra.
+    pub fn free_load_errors(&self, block: BlockId) -> (f64, f64) {
+        self.audit.ledger.free_load_errors(block)
+    }
+
     /// Largest stable h = ω_c Δt; none where contact is solved for, or never stable.
     pub fn contact_bound(&self) -> Option<f64> {
         if self.newton.is_some() { None } else { self.problem.integrator.contact_bound() }
@@ -174,6 +186,13 @@ impl Simulation {
     /// Whether contact has friction.
     pub fn has_friction(&self) -> bool {
         self.contact.as_ref().is_some_and(|model| model.has_friction())
+    }
+
+    /// Whether the scheme takes reactions at one instant for their mean over a step where that is not so: with damping in proportion to stiffness, and where supports move. What
+    /// momentum blocks have then differs from the impulses that are booked.
+    pub fn books_reactions_at_one_instant(&self) -> bool {
+        let changes = |shape: &Prototype| shape.damping.stiffness > 0.0 || !shape.supports.motions.is_empty();
+        !self.weights.forces_do_their_work() && self.problem.shapes.iter().any(changes)
     }
 
     /// Whether errors of steps without contact fall with the square of the step.

@@ -184,6 +184,7 @@ impl Simulation {
         if matches!(rests, Ok(Some(_))) && settling.lets_go(Progress::new(self, self.damping_of(settle))) {
             rests = self.come_to_rest((settle, settling), &Ramp::default(), watch);
         }
+        let unsettled = self.least_settled();
         settling.masses = self.unscale_masses()?;
         if rests?.is_none() {
             return Ok(false);
@@ -193,6 +194,7 @@ impl Simulation {
         self.scratch.force = force;
         kept?;
         self.begin_at_rest(std::mem::take(&mut settling.start));
+        self.audit.ledger.note_unsettled(unsettled);
         Ok(true)
     }
 
@@ -271,6 +273,7 @@ impl Simulation {
         settling.bonds_hold = false;
         let ramp = Ramp { start_s: self.time_s(), step_s: self.step_s(), steps: ramp_steps };
         let last = self.come_to_rest((settle, &mut settling), &ramp, watch);
+        let unsettled = self.least_settled();
         self.unscale_masses()?;
         let last = last?;
         self.settling = None;
@@ -279,6 +282,7 @@ impl Simulation {
         self.state.step = step + ramp_steps;
         let way = std::mem::replace(&mut self.audit.ledger, before);
         self.audit.ledger.begin_anew_at_contact();
+        self.audit.ledger.note_unsettled(unsettled);
         self.audit.ledger.blocks().rest_rebounds();
         let kept_j = self.keep_reactions_of_rest()?;
         let (new, books) = self.look()?;

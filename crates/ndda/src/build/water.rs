@@ -51,6 +51,11 @@ pub(crate) fn largest_pa(gravity_m_s2: [f64; 3], blocks: &BlockSet, water: &Wate
     pressures_pa.fold(0.0, f64::max)
 }
 
+/// Blocks with wet faces.
+pub(crate) fn wet_blocks(blocks: &BlockSet, on: &Wet) -> impl Iterator<Item = BlockId> {
+    wet(blocks, on).into_iter().flatten().map(|(block, _)| block)
+}
+
 fn wet(blocks: &BlockSet, on: &Wet) -> Result<Vec<Faces>, String> {
     match on {
         Wet::Joint(pattern) => {

@@ -110,12 +110,12 @@ impl Driver {
 
     /// The simulation's label so far: a sample is taken first, so that nothing since the last one is missed.
     ///
-    /// After the last step the label is that of a run: where blocks hit several times or disturb each other, and where there is no contact, the steps of an accurate scene are taken
+    /// After the last step the label is that of a run: where blocks hit several times, hit on strongly damped contact or disturb each other, where loads change along the way of a block, and where there is no contact, the steps of an accurate scene are taken
     /// again, from a slightly different start or with half the step. The result is kept until the next step. They cannot be taken again after
     /// [`set_force`](Self::set_force), [`set_velocity`](Self::set_velocity) or a [`change`](Self::change) of what acts on blocks, nor with parts of the
     /// caller's own: where a run would have been repeated, the reasons then say that it was not, and the word is `Inaccurate` if that was to be with half
-    /// the step after impacts, whose errors may have grown. It is `Inaccurate`, too, where blocks are driven in steps that follow each other, and the reasons
-    /// say so. Before the last step, the label judges the steps that were taken.
+    /// the step after impacts, whose errors may have grown or be too large. It is `Inaccurate`, too, where blocks are driven in steps that follow each
+    /// other, and the reasons say so. Before the last step, the label judges the steps that were taken.
     pub fn label(&mut self) -> Label {
         self.label_watched(&AtomicBool::new(false), &|_| {})
     }
@@ -135,7 +135,11 @@ impl Driver {
         let twins = twin::twins(Sensitivity::Auto, &self.model.simulation);
         let other = match self.why_not_again() {
             _ if twins.is_empty() => None,
-            Some(why) => Some(unrepeated(&twins, &why, twin::hits_again(&self.model.simulation))),
+            Some(why) => {
+                let simulation = &self.model.simulation;
+                let reasons = (twin::hits_again(simulation), twin::hits_damped(simulation));
+                Some(unrepeated(&twins, &why, reasons))
+            }
             None => match self.repeated(&twins, stop, tell) {
                 ControlFlow::Continue(other) => other,
                 ControlFlow::Break(unknown) => return unknown,
@@ -178,8 +182,9 @@ impl Driver {
     }
 }
 
-/// The label of an accurate scene whose steps would be taken again, were it not for what `why` says; errors may have grown where blocks hit again.
-fn unrepeated(twins: &[Twin], why: &str, hits_again: bool) -> Label {
+/// The label of an accurate scene whose steps would be taken again, were it not for what `why` says; errors may have grown where blocks hit again, and steps may be too long where
+/// blocks hit on strongly damped contact.
+fn unrepeated(twins: &[Twin], why: &str, (hits_again, hits_damped): (bool, bool)) -> Label {
     let (pushed, halved) =
         (twins.iter().any(|&twin| twin != Twin::HalfStep), twins.contains(&Twin::HalfStep));
     let (how, unknown) = match (pushed, halved) {
@@ -196,7 +201,8 @@ fn unrepeated(twins: &[Twin], why: &str, hits_again: bool) -> Label {
         false => "begin with velocities that differ by 1e-4 of the largest, and compare",
     };
     let reason = format!("the run was not repeated {how}, since {why}: {unknown}; {cure}");
-    let word = if halved && hits_again { LabelWord::Inaccurate } else { LabelWord::Accurate };
+    let word =
+        if halved && (hits_again || hits_damped) { LabelWord::Inaccurate } else { LabelWord::Accurate };
     Label { word, reasons: vec![reason] }
 }
 
@@ -322,7 +328,7 @@ mod tests {
 
     #[test]
     fn the_repetition_that_is_left_out_decides_what_is_not_known() {
-        let label = |twins: &[Twin]| unrepeated(twins, "a force was set at t = 1 s", true);
+        let label = |twins: &[Twin]| unrepeated(twins, "a force was set at t = 1 s", (true, false));
         let (pushed, both) = (label(&[Twin::Push(1.0)]), label(&[Twin::Push(1.0), Twin::HalfStep]));
         assert_eq!((pushed.word, both.word), (LabelWord::Accurate, LabelWord::Inaccurate));
         assert!(

@@ -65,7 +65,8 @@ pub struct Guess {
     pub settles: bool,
     /// Time of the twin that shows whether the motion is sensitive, which a run makes if three or more blocks move; none where fewer can [s].
     pub twin_s: Option<f64>,
-    /// Time of the twin with half the step, which a run makes if a block hits several times, or always; none where nothing can move [s].
+    /// Time of the twin with half the step, which a run makes if a block hits several times, or once on strongly damped contact where blocks deform, or if loads change along its
+    /// way, or always; none where nothing can move [s].
     pub half_step_s: Option<f64>,
     /// Whether it makes that twin always: without contact, and with friction where it takes about a second.
     pub always_halves: bool,
@@ -220,7 +221,7 @@ impl fmt::Display for Guess {
             write!(
                 f,
                 "\n  {half_step_s:.1} s more{}: a second run with half the step shows whether speeds are right",
-                if self.always_halves { "" } else { " if a block hits several times" }
+                if self.always_halves { "" } else { " if impacts or changing loads call for it" }
             )?;
         }
         write!(f, "\nit would write")?;

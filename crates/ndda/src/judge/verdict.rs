@@ -86,6 +86,7 @@ fn entries(simulation: &Simulation) -> Vec<Entry> {
     entries.push(friction(simulation));
     entries.extend(friction_search(simulation));
     entries.extend(drawn_overlaps(simulation));
+    entries.extend(unsettled(simulation));
     entries.extend(creep(simulation));
     entries.push(hops(simulation));
     entries.extend(chatter(simulation));
@@ -134,10 +135,15 @@ fn momentum(simulation: &Simulation) -> [Entry; 2] {
     let (linear, angular) = (worst.linear_momentum, worst.angular_momentum);
     // Held blocks exchange angular momentum with their supports through strains that the ledger does not record.
     let turning = if simulation.is_closed() { judged(angular, 1e-8, 1e-6) } else { shown(angular) };
+    let cause = match simulation.books_reactions_at_one_instant() {
+        true => {
+            "; it seems so, since `Newmark` and `GeneralizedAlpha` take reactions at one instant for their mean over a step, which does not hold with damping in proportion to \
+             stiffness or with supports that move: use Midpoint"
+        }
+        false => "; please report this scene",
+    };
     let reason = |what: &str, value: f64| {
-        format!(
-            "{what} is not conserved: the error is {value:.1e} of the largest {what}; please report this scene"
-        )
+        format!("{what} is not conserved: the error is {value:.1e} of the largest {what}{cause}")
     };
     [
         Entry::new(
@@ -205,6 +211,21 @@ fn drawn_overlaps(simulation: &Simulation) -> Option<Entry> {
         100.0 * SPEED
     );
     (thrown.value > 0.0).then(|| warned("speed from drawn overlaps / largest speed", part, SPEED, reason))
+}
+
+/// Whether settling has left a block far from rest; said only where it has.
+fn unsettled(simulation: &Simulation) -> Option<Entry> {
+    let found = simulation.invariants().unsettled;
+    let part = found.over(simulation.largest_speed_m_s());
+    let reason = format!(
+        "the scene has settled but block `{}` has not: it sets off at about {:.1e} m/s, {:.0} times what an accurate label allows; divide the tolerance of settle by {:.0}",
+        simulation.blocks().names[found.block as usize],
+        found.speed_m_s,
+        part / SPEED,
+        10f64.powf((part / SPEED).log10().ceil())
+    );
+    (part > SPEED)
+        .then(|| warned("speed that settling leaves to a block / its largest speed", part, SPEED, reason))
 }
 
 /// Energy that contact makes or takes, pair by pair.
@@ -354,3 +375,6 @@ fn warned(what: &'static str, value: f64, limit: f64, reason: String) -> Entry {
 fn shown(value: f64) -> Verdict {
     Verdict { value: Some(value), limit: None, verdict: Judgement::Pass }
 }
+
+#[cfg(test)]
+mod tests;

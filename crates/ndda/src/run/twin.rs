@@ -4,6 +4,7 @@
 //! sensitive: in heaps, falling columns, toppling slopes, and where a block hops on contact that is not damped. One with half the step does where the errors
 //! of impacts have grown in the next ones.
 
+mod failed;
 mod parted;
 mod through_stages;
 
@@ -23,6 +24,7 @@ use ndda_solver::{BodyKind, Settle, Simulation, StartSnapshot, StepError};
 use super::unless_ended;
 use crate::judge::words::SECOND_RUN;
 use crate::summary::{Label, LabelWord, Status, Summary};
+use failed::Failed;
 pub(super) use parted::Parted;
 use parted::{farthest_m, height_m, parted};
 
@@ -50,6 +52,12 @@ const HOPS: f64 = 8.0;
 /// Part of the largest speed that contact adds to the velocity of a block in its second largest impact, from which on half the step is tried.
 const IMPACT: f64 = 0.05;
 
+/// Part of the largest speed that contact adds to the velocity of a block in its largest impact, from which on half the step is tried where contact is damped strongly.
+const DAMPED_IMPACT: f64 = 0.02;
+/// What steps may leave of loads along the way of a block that nothing touches, at most: of its velocity over the largest speed, and of its place over the smallest height of its
+/// tetrahedra; beyond, half the step is tried. Half of what an accurate label allows, of errors that are added up without regard to their direction.
+const FREE_LOADS: (f64, f64) = (0.005, 0.05);
+
 /// Steps times boundary triangles of a run that is short: it takes about a second.
 const SHORT: u64 = 2_000_000;
 
@@ -59,8 +67,8 @@ pub(crate) fn may_want_twin(simulation: &Simulation) -> bool {
     simulation.has_contact() && free.take(ENOUGH).count() == ENOUGH
 }
 
-/// Whether a run that begins here may make a twin with half the step, by default: always without contact, with friction or a scheme of first order if it is short, else if a
-/// block hits several times.
+/// Whether a run that begins here may make a twin with half the step, by default: always without contact, with friction or a scheme of first order if it is short, else
+/// where [`may_err`] finds a reason.
 pub(crate) fn may_want_half_step(simulation: &Simulation) -> bool {
     let may_move = |block| match simulation.has_contact() {
         true => moves(simulation, block),
@@ -90,7 +98,7 @@ pub(crate) fn twins(asked: Sensitivity, simulation: &Simulation) -> Vec<Twin> {
         }
         Sensitivity::Auto => {
             let moved: Vec<BlockId> = moved().take(ENOUGH).collect();
-            let halves = hits_again(simulation) || always_halves(simulation, simulation.state().step);
+            let halves = may_err(simulation) || always_halves(simulation, simulation.state().step);
             (moved.len() == ENOUGH || lie_together(simulation, &moved) || hops, halves)
         }
     };
@@ -110,6 +118,12 @@ pub(crate) fn told(twins: &[Twin], simulation: &Simulation) -> String {
         (true, true) => format!("{pushed}, then with half the step"),
         (true, false) => pushed.into(),
         (false, _) if hits_again(simulation) => "half the step, since blocks have hit several times".into(),
+        (false, _) if hits_damped(simulation) => {
+            "half the step, since blocks that deform have hit on contact with a restitution below 0.6".into()
+        }
+        (false, _) if simulation.has_contact() && free_loads(simulation) => {
+            "half the step, since loads change along the way of a block that nothing touches".into()
+        }
         (false, _) => "half the step".into(),
     };
     format!(
@@ -177,10 +191,7 @@ pub(crate) fn label_of_twins(
         Ok(ControlFlow::Break(())) => return ControlFlow::Break(interrupted(twins)),
         Ok(ControlFlow::Continue(None)) => return ControlFlow::Continue(None),
         Ok(ControlFlow::Continue(Some(parted))) => (parted.word(), parted.to_string()),
-        Err(error) => (
-            LabelWord::Sensitive,
-            format!("a second run, whose start or step differs a little, stops {error}"),
-        ),
+        Err((twin, failed)) => (failed.word(twin), failed.reason(twin)),
     };
     ControlFlow::Continue(Some(Label { word, reasons: vec![reason] }))
 }
@@ -200,13 +211,13 @@ fn interrupted(twins: &[Twin]) -> Label {
 /// Runs twins of a simulation that has come to its end. None where all stay together; broken off where somebody asks to end before that is known.
 ///
 /// # Errors
-/// The message of the error that stops a twin.
+/// The twin that has no end, and why.
 fn part(
     simulation: &mut Simulation,
     again: &Again,
     twins: &[Twin],
     stop: &AtomicBool,
-) -> Result<ControlFlow<(), Option<Parted>>, String> {
+) -> Result<ControlFlow<(), Option<Parted>>, (Twin, Failed)> {
     // A twin through stages is pushed at the beginning of each.
     let pushes = match again {
         Again::FromStart { .. } => 1,
@@ -221,11 +232,12 @@ fn part(
         let ended = match again {
             Again::FromStart { start, settle } => {
                 from_start(simulation, (start, settle.as_ref()), twin, stop)
-                    .map_err(|error| error.to_string())?
+                    .map_err(|error| (twin, error.into()))?
             }
             Again::ThroughStages { loaded, folder, stop } => {
                 let ranks = simulation.ranks().clone();
-                through_stages::ended((loaded, folder), (twin, scale_m_s), ranks, stop)?
+                through_stages::ended((loaded, folder), (twin, scale_m_s), ranks, stop)
+                    .map_err(|failed| (twin, failed))?
             }
         };
         let Some(ended) = ended else { return Ok(ControlFlow::Break(())) };
@@ -319,6 +331,28 @@ pub(crate) fn always_halves(simulation: &Simulation, steps: u64) -> bool {
 /// Whether a block has hit several times.
 pub(crate) fn hits_again(simulation: &Simulation) -> bool {
     simulation.invariants().second_impact.value >= IMPACT
+}
+
+/// Whether a run may be off though each of its steps passes: a block has hit several times, or on strongly damped contact, or its loads have changed along its way.
+fn may_err(simulation: &Simulation) -> bool {
+    hits_again(simulation) || hits_damped(simulation) || free_loads(simulation)
+}
+
+/// Whether a block has hit where contact is damped strongly and blocks deform.
+pub(crate) fn hits_damped(simulation: &Simulation) -> bool {
+    simulation.damps_strongly() && simulation.invariants().impact.value >= DAMPED_IMPACT
+}
+
+/// Whether loads have changed along the way of a block that nothing touches by more than steps resolve for sure.
+fn free_loads(simulation: &Simulation) -> bool {
+    let worst = simulation.invariants();
+    worst.free_speed.value > FREE_LOADS.0 || worst.free_place.value > FREE_LOADS.1
+}
+
+/// The same of one block.
+fn has_free_loads(simulation: &Simulation, block: BlockId) -> bool {
+    let (speed, place) = simulation.free_load_errors(block);
+    speed > FREE_LOADS.0 || place > FREE_LOADS.1
 }
 
 /// Whether a block moves as forces ask.

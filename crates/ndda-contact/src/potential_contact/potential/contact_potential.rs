@@ -115,7 +115,7 @@ pub enum PotentialError {
     /// All nodes of a tetrahedron of a concave block are on its surface, where interpolated depth is zero.
     #[error(
         "tetrahedron {} of the concave block `{block}` has all its nodes on the surface, where depth is zero: give it an \
-         interior node (pattern TwentyFour, or a finer mesh), or take `potential: Element`", tet.0
+         interior node (pattern TwentyFour, or a finer mesh), or take the potential `Element`", tet.0
     )]
     NoInteriorNode {
         /// Name of the block.
@@ -126,7 +126,7 @@ pub enum PotentialError {
     /// Too many faces of a block are nearest to points of one tetrahedron.
     #[error(
         "tetrahedron {} of block `{block}` is near {faces} faces of the block at once, more than {MOST_PIECES}: take \
-         `potential: Element` or `Volume`, or give the block a coarser surface with fewer faces",
+         the potential `Element` or `Volume`, or give the block a coarser surface with fewer faces, a `Sphere` at most 1 of `levels`",
         tet.0
     )]
     TooManyFaces {

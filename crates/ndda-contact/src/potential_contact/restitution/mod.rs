@@ -92,6 +92,11 @@ impl ContactDamping {
         }
     }
 
+    /// Whether a contact has a restitution below 0.6.
+    pub(crate) fn is_strong(&self) -> bool {
+        self.table.damps_strongly()
+    }
+
     /// Finds the damping of all facets that touch.
     pub(crate) fn find(&mut self, scene: &DampingScene, history: &mut ContactHistory) {
         self.place_pushes(scene);

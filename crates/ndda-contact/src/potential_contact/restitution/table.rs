@@ -6,6 +6,9 @@ use ndda_mesh::{BlockId, BlockSet, TriangleId};
 
 use crate::restitution::law::{factor_of, shear_factor_of};
 
+/// Restitution below which damping is strong.
+const STRONG: f64 = 0.6;
+
 /// Damping factors c/√(m K), along the normal and along the face.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Factors {
@@ -89,6 +92,13 @@ impl RestitutionTable {
         self.of_pair.iter().chain(self.on_surface.values()).any(|factors| factors.damp())
     }
 
+    /// Whether any contact has a restitution below 0.6.
+    pub fn damps_strongly(&self) -> bool {
+        let (normal, shear) = (factor_of(STRONG), shear_factor_of(STRONG));
+        let mut all = self.of_pair.iter().chain(self.on_surface.values());
+        all.any(|factors| factors.normal > normal || factors.shear > normal.max(shear))
+    }
+
     /// Damping of a facet of one block that touches another.
     pub(super) fn factors(&self, blocks: &BlockSet, facet: TriangleId, target: BlockId) -> Factors {
         let surface = blocks.triangle_surface[facet.index()];
@@ -109,8 +119,10 @@ mod tests {
     fn a_table_damps_unless_all_contacts_give_back_all() {
         let mut table = RestitutionTable::everywhere(1.0);
         assert!(!table.damps());
+        table.set((0, 0), 0.7);
+        assert!(table.damps() && !table.damps_strongly());
         table.set((0, 0), 0.5);
-        assert!(table.damps());
+        assert!(table.damps() && table.damps_strongly());
         table.set((0, 0), 1.0);
         table.set_on(&[3], 0.9);
         assert!(table.damps());

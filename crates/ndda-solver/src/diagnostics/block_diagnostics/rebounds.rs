@@ -42,6 +42,31 @@ impl BlockDiagnostics {
         self.worst_speed(|_| speed_m_s, rounding_j, |balance| balance.hops.second_impact_m_s())
     }
 
+    /// Largest impact of all blocks, over a speed; what rounding may have done does not count.
+    pub(crate) fn impact(&self, speed_m_s: f64, rounding_j: f64) -> Worst {
+        self.worst_speed(|_| speed_m_s, rounding_j, |balance| balance.hops.impact_m_s())
+    }
+
+    /// Most that steps may have left of loads that change along the way of a block which nothing touches: of its velocity, over a speed, and of its place, over the smallest
+    /// height of its tetrahedra. What rounding may have done does not count.
+    pub(crate) fn free_loads(&self, speed_m_s: f64, rounding_j: f64) -> (Worst, Worst) {
+        let (mut speed, mut place) = (Worst::default(), Worst::default());
+        for (block, (balance, scale)) in self.balances.iter().zip(&self.scales).enumerate() {
+            let error_m_s = balance.free_loads.error_m_s();
+            if 0.5 * scale.mass_kg * error_m_s * error_m_s > rounding_j {
+                speed.take(error_m_s / speed_m_s, block);
+                place.take(balance.free_loads.place_m() / scale.height_m, block);
+            }
+        }
+        (speed, place)
+    }
+
+    /// The same of one block.
+    pub(crate) fn free_loads_of(&self, block: BlockId, speed_m_s: f64) -> (f64, f64) {
+        let (balance, scale) = (&self.balances[block.index()], &self.scales[block.index()]);
+        (balance.free_loads.error_m_s() / speed_m_s, balance.free_loads.place_m() / scale.height_m)
+    }
+
     /// Largest speed that rebounds of contact have added to a block, over a speed: from the line of its speed, and from its impulse, which holds on one plane only. What
     /// rounding may have done does not count.
     pub(crate) fn rebound(&self, speed_m_s: f64, rounding_j: f64) -> (Worst, Worst) {

@@ -176,6 +176,74 @@ fn a_raft_that_its_steps_do_not_resolve_is_inaccurate_although_nothing_touches_i
     assert!(short == LabelWord::Accurate && little < 0.01, "{short:?} {little}");
 }
 
+/// Label of a scene of rigid or elastic blocks.
+fn label_of(text: &str) -> (LabelWord, String) {
+    let summary = Run::new(Model::from_text(text).unwrap()).finish(&mut []).unwrap().summary;
+    (summary.label.word, summary.label.reasons.join("; "))
+}
+
+#[test]
+fn loads_along_the_way_of_a_block_are_judged_where_other_blocks_could_touch_it() {
+    let scene = |blocks: &str, loads: &str, (step_s, end_s): (f64, f64)| {
+        format!(
+            "(title: \"loads\", time: (step_s: {step_s:e}, end_s: {end_s}), gravity_m_s2: (0, 0, -9.81),
+            materials: [(name: \"rock\", young_pa: 1e9, poisson: 0.25, density_kg_m3: 900)],
+            blocks: [(name: \"sea\", material: \"rock\", body: Fixed, shape: Box(size_m: (9, 9, 1), cells: (1, 1, 1)), at_m: (-5, -5, -4)), {blocks}],
+            contact: Potential(penalty_pa: 2e7, potential: Smooth()), {loads})"
+        )
+    };
+    let raft = |size_m: f64| {
+        format!(
+            "(name: \"a\", material: \"rock\", body: Rigid, shape: Box(size_m: ({size_m}, {size_m}, {size_m}), cells: (1, 1, 1)), at_m: (0, 0, {})),",
+            -0.8 * size_m
+        )
+    };
+    let water = "water: [(on: Part(block: \"a\", region: All), pressure: Level(at_m: (0, 0, 0)))]";
+    let heaves = |step_s: f64| label_of(&scene(&raft(1.0), water, (step_s, 6.0)));
+    let ((long, reason), (short, none)) = (heaves(0.1), heaves(0.01));
+    assert!(long == LabelWord::Inaccurate && reason.contains("half the step"), "{reason}");
+    assert_eq!(short, LabelWord::Accurate, "{none}");
+    // Another block touches the bed all the time.
+    let rests = "(name: \"rest\", material: \"rock\", body: Rigid, shape: Box(size_m: (2, 2, 2), cells: (1, 1, 1)), at_m: (-4, -4, -3.00044145)),";
+    let (word, reason) = label_of(&scene(&(raft(0.01) + rests), water, (5e-3, 2.0)));
+    assert!(word == LabelWord::Inaccurate && reason.contains("`a`"), "{reason}");
+    // A block that only falls needs no second run.
+    let text = scene(&raft(1.0), "", (0.01, 0.5));
+    let summary = Run::new(Model::from_text(&text).unwrap()).finish(&mut []).unwrap().summary;
+    assert!(summary.stages_s.0.iter().all(|(stage, _)| stage != SECOND_RUN), "{:?}", summary.label);
+}
+
+#[test]
+fn one_impact_of_a_block_that_deforms_on_strongly_damped_contact_is_judged_by_half_the_step() {
+    let rebounds = |step_s: f64, restitution: f64| {
+        label_of(&format!(
+            "(title: \"rebound\", time: (step_s: {step_s:e}, end_s: 0.03),
+            materials: [(name: \"rock\", young_pa: 5e9, poisson: 0.25, density_kg_m3: 2650)],
+            blocks: [(name: \"wall\", material: \"rock\", body: Fixed, shape: Box(size_m: (1, 1, 1), cells: (2, 2, 2))),
+                (name: \"a\", material: \"rock\", body: Elastic, shape: Box(size_m: (1, 1, 1), cells: (2, 2, 2), pattern: TwentyFour), at_m: (1.02, 0, 0), velocity_m_s: (-2, 0, 0))],
+            contact: Potential(penalty_pa: 5e8, potential: Smooth(), restitution: {restitution}))"
+        ))
+    };
+    let (word, reason) = rebounds(4e-5, 0.0);
+    assert!(word == LabelWord::Inaccurate && reason.contains("half the step"), "{reason}");
+    let (word, reason) = rebounds(4e-5, 0.3);
+    assert_eq!(word, LabelWord::Accurate, "{reason}");
+}
+
+#[test]
+fn a_small_block_that_settling_leaves_far_from_rest_beside_a_large_one_is_named() {
+    let (word, reason) = label_of(
+        "(title: \"raft\", time: (step_s: 1e-3, end_s: 0.2), gravity_m_s2: (0, 0, -9.81), settle: (),
+        materials: [(name: \"rock\", young_pa: 1e9, poisson: 0.25, density_kg_m3: 900)],
+        blocks: [(name: \"sea\", material: \"rock\", body: Fixed, shape: Box(size_m: (10, 10, 1), cells: (1, 1, 1)), at_m: (-5, -5, -4)),
+            (name: \"rest\", material: \"rock\", body: Rigid, shape: Box(size_m: (2, 2, 2), cells: (1, 1, 1)), at_m: (-4, -4, -3)),
+            (name: \"a\", material: \"rock\", body: Rigid, shape: Box(size_m: (0.01, 0.01, 0.01), cells: (1, 1, 1)), at_m: (0, 0, -0.008))],
+        contact: Potential(penalty_pa: 2e7, potential: Smooth()),
+        water: [(on: Part(block: \"a\", region: All), pressure: Level(at_m: (0, 0, 0)))])",
+    );
+    assert!(word == LabelWord::Inaccurate && reason.contains("block `a` has not"), "{reason}");
+}
+
 #[test]
 fn a_raft_that_its_water_carries_from_the_start_is_accurate() {
     for at in [0.0, 1e3] {
