@@ -3486,7 +3486,8 @@ class Settle(Builder):
     ----------
     tolerance : float, optional
         Speed left over the largest speed on the way, and with `Adaptive` and `Local` damping unbalanced
-        forces over loads [-]. Default: 1e-4.
+        forces over loads, or over the largest unbalanced forces on the way where loads cancel or there are
+        none [-]. Default: 1e-4.
     most_steps : int, optional
         Steps after which it is given up. Default: 1000000.
     damping : SettleDampingChoice, optional
@@ -4163,7 +4164,8 @@ class Then:
         ----------
         tolerance : float, optional
             Speed left over the largest speed on the way, and with `Adaptive` and `Local` damping unbalanced
-            forces over loads [-]. Default: 1e-4.
+            forces over loads, or over the largest unbalanced forces on the way where loads cancel or there
+            are none [-]. Default: 1e-4.
         most_steps : int, optional
             Steps after which it is given up. Default: 1000000.
         damping : SettleDampingChoice, optional
