@@ -30,6 +30,8 @@ pub(crate) struct StepContext<'a> {
     pub force: &'a [Vec3],
     /// The loads in it [N].
     pub external: &'a [Vec3],
+    /// Whether nothing but the weight acts on blocks that do not touch, which does not change along their way; not so while a scene settles.
+    pub falls_alone: bool,
     /// The part of the loads that changes over time [N]; empty if none does.
     pub changing: &'a [Vec3],
     /// Friction's part of it [N]; empty without friction.

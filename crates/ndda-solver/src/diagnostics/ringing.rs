@@ -52,6 +52,9 @@ impl RigidForcing {
         report: &BlockReport,
     ) -> Self {
         let touches = report.contact_rate2 > 0.0;
+        if context.falls_alone && !touches && shape.is_free() {
+            return Self::default();
+        }
         let operator = &shape.operator;
         let mut turn_m_s2 = Vec3::zeros();
         if shape.is_free() {

@@ -41,6 +41,7 @@ impl Simulation {
             contact_offset: self.state.contact_offset_of(BlockId(index as u32)),
             force,
             external: &self.loads.total()[range.clone()],
+            falls_alone: !self.loads.are_more_than_weight() && !self.has_bolts() && self.settling.is_none(),
             changing: self.loads.changing().get(range.clone()).unwrap_or(&[]),
             friction_force: self.scratch.friction_force.get(acted.clone()).unwrap_or(&[]),
             contact_stiffness: self.scratch.contact_stiffness.get(acted).unwrap_or(&[]),

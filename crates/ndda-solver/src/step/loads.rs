@@ -44,6 +44,8 @@ pub(crate) struct Loads {
     pressures: Vec<FollowerPressure>,
     /// Forces that a caller has set, per node [N]; empty while none was.
     driving: Vec<Vec3>,
+    /// Whether there are loads other than the weight from the start.
+    pub(crate) beyond_weight: bool,
     /// Sum of the varying ones now; empty if there are none, and so is `total`.
     changing: Vec<Vec3>,
     total: Vec<Vec3>,
@@ -72,6 +74,7 @@ impl Loads {
             release: None,
             pressures,
             driving: Vec::new(),
+            beyond_weight: false,
             changing: vec![Vec3::zeros(); nodes],
             total: vec![Vec3::zeros(); nodes],
             force,
@@ -179,6 +182,11 @@ impl Loads {
     /// Faces of pressures that change over time, and their factors.
     pub(crate) fn pressures_over_time(&self) -> impl Iterator<Item = (&[[u32; 3]], &Table)> {
         self.pressures.iter().filter_map(FollowerPressure::over_time)
+    }
+
+    /// Whether there are loads other than the weight, which may change along the way of a block.
+    pub(crate) fn are_more_than_weight(&self) -> bool {
+        self.beyond_weight || self.release.is_some() || !self.driving.is_empty() || !self.given.is_empty()
     }
 
     /// Whether a caller has set forces.

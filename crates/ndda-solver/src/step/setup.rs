@@ -285,6 +285,8 @@ impl Simulation {
                 ));
             }
         }
+        let beyond_weight =
+            !pressures.is_empty() || !varying.is_empty() || constant.iter().any(|f| *f != Vec3::zeros());
         match gravity_factor {
             None => constant.iter_mut().zip(weight).for_each(|(sum, f)| *sum += f),
             Some(factor) => varying.push(VaryingLoad::new(0, &weight, factor, gravity_m_s2.norm())),
@@ -293,6 +295,7 @@ impl Simulation {
         let rest = Places { position, velocity, lead_s: 0.0 };
         let starts = self.problem.blocks.node_starts().to_vec();
         self.loads = Loads::new(constant, varying, pressures, (starts, rest));
+        self.loads.beyond_weight = beyond_weight;
     }
 
     /// Opens the ledger, with the accelerations at the start for integrators that need them.
