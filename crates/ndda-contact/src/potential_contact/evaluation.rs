@@ -170,11 +170,10 @@ impl PotentialContact {
     #[inline(never)]
     fn keep_open_facets(&mut self, input: &ContactInput, history: &ContactHistory) {
         let Self { joints: Some(joints), new_facets, new_state, .. } = self else { return };
-        let key = |memory: &FacetMemory| (memory.facet, memory.target, memory.element);
         let len = history.law_state_len as usize;
         for (old, memory) in history.facets.iter().enumerate() {
             let state = history.state_of(old);
-            if let Err(place) = new_facets.binary_search_by_key(&key(memory), key)
+            if let Err(place) = new_facets.binary_search_by_key(&memory.key(), FacetMemory::key)
                 && openings::is_kept(joints, input, (memory, state))
             {
                 new_facets.insert(place, memory.at_rest());

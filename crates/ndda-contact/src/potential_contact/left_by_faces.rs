@@ -42,8 +42,7 @@ impl PotentialContact {
 
     fn remember_friction(&self, contact: &FacetContact, input: &ContactInput, history: &mut ContactHistory) {
         let FacetContact { facet, target, area_m2, normal, friction_n, .. } = *contact;
-        let key = |known: &FacetMemory| (known.facet, known.target, known.element);
-        let found = history.facets.binary_search_by_key(&(facet, target, None), key);
+        let found = history.find(&(facet, target, None));
         let (Err(place), Some(law)) = (found, self.friction_law(input.blocks, facet, target)) else { return };
         let basis = facet_basis(&input.blocks.triangle_corners(facet, input.position), &normal);
         let shear_n = [0, 1].map(|i| friction_n.dot(&basis[i]));

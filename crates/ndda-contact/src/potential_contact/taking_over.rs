@@ -118,9 +118,7 @@ impl PotentialContact {
         history: &mut ContactHistory,
     ) {
         let (blocks, wanted) = (input.blocks, key(input.blocks, joints.memory, &own[0]));
-        let known =
-            history.facets.binary_search_by_key(&wanted, |known| (known.facet, known.target, known.element));
-        let (Ok(place), Some(law)) = (known, law_of(&own[0], self, blocks)) else { return };
+        let (Ok(place), Some(law)) = (history.find(&wanted), law_of(&own[0], self, blocks)) else { return };
         let memory = &mut history.facets[place];
         memory.broken = false;
         let (Some(t), true) = (self.integrals.place_of(&wanted), law.shear_stiffness_pa_m() > 0.0) else {
@@ -179,7 +177,7 @@ fn law_of<'a>(bond: &Bond, model: &'a dyn ContactModel, blocks: &BlockSet) -> Op
     model.friction_law(blocks, bond.facet, blocks.tet_block[bond.tet.index()])
 }
 
-/// The same, where it holds together what touches.
+/// Law of the joint that a bond is in, if it holds together what touches.
 fn holding<'a>(bond: &Bond, model: &'a dyn ContactModel, blocks: &BlockSet) -> Option<&'a dyn FrictionLaw> {
     law_of(bond, model, blocks).filter(|law| law.holds_together())
 }

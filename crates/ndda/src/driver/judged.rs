@@ -61,7 +61,7 @@ impl Disturbed {
         often.then(|| {
             format!(
                 "blocks were driven in steps that follow each other ({self}, and {} times more soon after a change): errors of what is set \
-                 so are not judged, and are as large as the step; take the same steps with half of time.step_s, and compare",
+                 so are not judged, and grow in proportion to the step; take the same steps with half of time.step_s, and compare",
                 self.again
             )
         })

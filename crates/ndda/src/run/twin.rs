@@ -349,7 +349,7 @@ fn free_loads(simulation: &Simulation) -> bool {
     worst.free_speed.value > FREE_LOADS.0 || worst.free_place.value > FREE_LOADS.1
 }
 
-/// The same of one block.
+/// Whether loads have changed along the way of a block by more than steps resolve for sure, if nothing touches it.
 fn has_free_loads(simulation: &Simulation, block: BlockId) -> bool {
     let (speed, place) = simulation.free_load_errors(block);
     speed > FREE_LOADS.0 || place > FREE_LOADS.1

@@ -106,8 +106,7 @@ pub(crate) fn hand_over(
         area_m2: 2.0 * stretch.half_area,
         broken: !law.survives_slip(),
     };
-    let key = |known: &FacetMemory| (known.facet, known.target, known.element);
-    let found = history.facets.binary_search_by_key(&(facet, target, element), key);
+    let found = history.find(&(facet, target, element));
     let place = found.unwrap_or_else(|place| place);
     match found {
         // Beside bonds that hold, some of the facet may be left to friction already.

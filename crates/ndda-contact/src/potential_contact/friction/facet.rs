@@ -46,13 +46,13 @@ pub struct FacetForce {
 pub(crate) struct FacetOutcome {
     /// Slip and work of the shear spring in the step, where there is one.
     pub spring: Option<SpringSlip>,
-    /// What is kept where there is friction and contact.
+    /// Shear for the next step; none without friction or contact.
     pub memory: Option<KeptShear>,
     /// Energy that contact has taken up because the facet was moved out since it was clipped last [J].
     pub dilation_work_j: f64,
 }
 
-/// What a facet keeps of its shear for the next step.
+/// Shear of a facet, from which the next step goes on.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct KeptShear {
     /// Shear force in the facet's basis [N].
@@ -80,14 +80,13 @@ pub(crate) struct FacetScene<'a> {
 
 /// Place of a facet among those remembered, which are in the order of their keys: mostly about where it is among those that touch now.
 fn place_of(facets: &[FacetMemory], wanted: &Key, expected: usize) -> Option<usize> {
-    let key = |memory: &FacetMemory| (memory.facet, memory.target, memory.element);
     let start = expected.saturating_sub(NEAR).min(facets.len());
     let near = &facets[start..(start + 2 * NEAR).min(facets.len())];
     match near {
-        [first, .., last] if key(first) <= *wanted && *wanted <= key(last) => {
-            near.binary_search_by_key(wanted, key).ok().map(|place| start + place)
+        [first, .., last] if first.key() <= *wanted && *wanted <= last.key() => {
+            near.binary_search_by_key(wanted, FacetMemory::key).ok().map(|place| start + place)
         }
-        _ => facets.binary_search_by_key(wanted, key).ok(),
+        _ => facets.binary_search_by_key(wanted, FacetMemory::key).ok(),
     }
 }
 

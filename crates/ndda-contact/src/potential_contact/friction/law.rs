@@ -55,8 +55,7 @@ pub trait FrictionLaw: Send + Sync {
         0
     }
 
-    /// What these numbers mean, in their order, with how many there are of each meaning: where another law takes over, numbers of the same meaning go on, and the
-    /// others begin anew.
+    /// Meaning of these numbers and how many have it, in their order. Where another law takes over, numbers of the same meaning go on, and the others begin anew.
     fn state_parts(&self) -> Vec<(&'static str, usize)> {
         vec![(self.name(), self.state_len())]
     }

@@ -1,10 +1,16 @@
 //! Friction laws' own numbers per facet, beside the history that all laws share.
 
+use crate::friction::bonds_of_facet::Key;
 use crate::friction::law::FrictionLaw;
 use crate::model::{ContactError, ContactHistory, FacetMemory};
 
 impl FacetMemory {
-    /// The same of a facet that does not touch.
+    /// Facet, target and element by which it is found, in this order.
+    pub(crate) fn key(&self) -> Key {
+        (self.facet, self.target, self.element)
+    }
+
+    /// The memory of a facet that has stopped touching: without force and area.
     pub(crate) fn at_rest(self) -> Self {
         Self { shear_n: [0.0; 2], twist_n_m: 0.0, area_m2: 0.0, ..self }
     }
@@ -57,6 +63,11 @@ impl ContactHistory {
         &mut self.law_state[place * len..(place + 1) * len]
     }
 
+    /// Place of a facet among those remembered, or where it belongs.
+    pub(crate) fn find(&self, wanted: &Key) -> Result<usize, usize> {
+        self.facets.binary_search_by_key(wanted, FacetMemory::key)
+    }
+
     /// Adds a facet.
     pub(crate) fn insert(&mut self, place: usize, memory: FacetMemory) {
         let len = self.law_state_len as usize;
@@ -89,7 +100,7 @@ mod tests {
     use crate::friction::dilating::{Dilating, Dilation};
     use crate::friction::softening_coulomb::SofteningCoulomb;
 
-    /// What is left of the numbers of a facet when its law changes from one to another, beside a joint whose law keeps `len` numbers from then on.
+    /// Numbers that a facet keeps when laws change: `old` and `new` are those of this facet and of another one.
     fn kept(old: [&dyn FrictionLaw; 2], new: [&dyn FrictionLaw; 2], of_first: &[f64]) -> Vec<f64> {
         let facet = |facet| FacetMemory {
             facet: TriangleId(facet),

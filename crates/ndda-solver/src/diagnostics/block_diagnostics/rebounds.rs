@@ -61,7 +61,7 @@ impl BlockDiagnostics {
         (speed, place)
     }
 
-    /// The same of one block.
+    /// Errors that changing loads may leave to a block that nothing touches: of its velocity over a speed, and of its place over its height.
     pub(crate) fn free_loads_of(&self, block: BlockId, speed_m_s: f64) -> (f64, f64) {
         let (balance, scale) = (&self.balances[block.index()], &self.scales[block.index()]);
         (balance.free_loads.error_m_s() / speed_m_s, balance.free_loads.place_m() / scale.height_m)
