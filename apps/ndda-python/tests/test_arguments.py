@@ -245,6 +245,26 @@ def test_numbers_of_a_scene_that_are_known_only_later_are_none() -> None:
     assert (scene.step_s, scene.steps, scene.end_s) == (0.01, None, None)
 
 
+def test_a_snapshot_brings_frames_and_history_of_its_own_run(fall: ndda.Simulation) -> None:
+    start = fall.snapshot()
+    fall.blocks["block"].set_velocity((1, 0, 0))
+    fall.run(until=0.4, frames=4)
+    struck = fall.snapshot()
+    fall.restore(start)
+    fall.run(until=0.6, frames=3)
+    fall.restore(struck)
+    assert [round(time, 2) for time, _ in fall._frames] == [0.0, 0.1, 0.2, 0.3, 0.4]
+    meshio = pytest.importorskip("meshio")
+    sideways = [meshio.read(file).point_data["Displacement"][:, 0].max() for _, file in fall._frames]
+    np.testing.assert_allclose(sideways, [0, 0.1, 0.2, 0.3, 0.4], rtol=1e-6, atol=1e-9)
+    np.testing.assert_allclose(fall.history["momentum_x_kg_m_s"][1:], 2600.0, rtol=1e-9)
+    other = ndda.Simulation(ndda.parse(ndda.EXAMPLE))
+    other.run(until=0.6, frames=3)
+    other.restore(struck)
+    assert [round(time, 2) for time, _ in other._frames] == [0.4]
+    np.testing.assert_array_equal(other.history["time_s"], fall.history["time_s"])
+
+
 def test_after_a_restore_frames_are_those_of_the_present_run(fall: ndda.Simulation) -> None:
     kept = fall.snapshot()
     fall.run(frames=4)

@@ -76,6 +76,8 @@ pub struct DriverSnapshot {
     scene: String,
     snapshot: Snapshot,
     stopped: Option<StepError>,
+    /// What was sampled on the way to it.
+    history: Vec<Sample>,
     disturbed: Option<Disturbed>,
     /// Parts that the scene does not name, in words.
     own: Option<String>,
@@ -233,15 +235,15 @@ impl Driver {
         contact_rows(&self.model.simulation, &mut self.facets)
     }
 
-    /// A copy of all that changes.
+    /// A copy of all that changes, and of the history so far.
     pub fn snapshot(&self) -> DriverSnapshot {
         let (origin, scene) = (self.origin.clone(), self.model.loaded.text.clone());
         let (snapshot, stopped) = (self.model.simulation.snapshot(), self.stopped.clone());
-        let (disturbed, own) = (self.course.disturbed, self.own.clone());
-        DriverSnapshot { origin, scene, snapshot, stopped, disturbed, own }
+        let (history, disturbed, own) = (self.history.clone(), self.course.disturbed, self.own.clone());
+        DriverSnapshot { origin, scene, snapshot, stopped, history, disturbed, own }
     }
 
-    /// Goes on from a snapshot of the same scene, bit for bit.
+    /// Goes on from a snapshot of the same scene, bit for bit, with the history that led to it.
     ///
     /// # Errors
     /// [`DriverRestoreError`] when it is of another scene; nothing has changed then.
@@ -262,8 +264,7 @@ impl Driver {
         self.stopped.clone_from(&snapshot.stopped);
         self.course.forget_label();
         self.course.disturbed = snapshot.disturbed;
-        let step = self.simulation().state().step;
-        self.history.retain(|sample| sample.step <= step);
+        self.history.clone_from(&snapshot.history);
         Ok(())
     }
 
@@ -373,6 +374,22 @@ mod tests {
         assert!(matches!(Driver::load(&file, None), Err(LoadError::Own { .. })));
         Driver::load(&file, Some(parts.clone())).unwrap().restore(&driver.snapshot()).unwrap();
         begin().unwrap().restore(&driver.snapshot()).unwrap();
+    }
+
+    #[test]
+    fn a_snapshot_brings_the_history_that_led_to_it_and_not_that_of_another_run() {
+        let fall = || Driver::new(Model::from_text(EXAMPLE.1).unwrap()).unwrap();
+        let (mut struck, mut plain) = (fall(), fall());
+        struck.set_velocity(BlockId(0), Vec3::x(), Vec3::zeros()).unwrap();
+        struck.step(20).unwrap();
+        let (snapshot, history) = (struck.snapshot(), struck.history().to_vec());
+        plain.step(30).unwrap();
+        assert_ne!(plain.history()[10], history[10]);
+        plain.restore(&snapshot).unwrap();
+        assert_eq!(plain.history(), history);
+        plain.step(10).unwrap();
+        struck.step(10).unwrap();
+        assert_eq!(plain.history(), struck.history());
     }
 
     #[test]

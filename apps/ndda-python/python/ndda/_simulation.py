@@ -6,6 +6,7 @@ import os
 from collections.abc import Callable
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
+from weakref import WeakKeyDictionary
 
 from ndda import _core
 from ndda._arrays import _HISTORY
@@ -60,9 +61,11 @@ class Simulation(Driven):
     (50, 'accurate')
     """
 
-    __slots__ = ("__weakref__", "_folder", "_frames", "_law")
+    __slots__ = ("__weakref__", "_files", "_folder", "_frames", "_frames_of", "_law")
+    _files: int
     _folder: Any
     _frames: list[tuple[float, str]]
+    _frames_of: WeakKeyDictionary[_core.Snapshot, list[tuple[float, str]]]
     _law: object
 
     def __new__(
@@ -93,7 +96,8 @@ class Simulation(Driven):
         self._keeps_contacts = contacts
         self._law = law
         self._frames = []
-        self._folder = None
+        self._frames_of = WeakKeyDictionary()
+        self._files, self._folder = 0, None
         warnings = self._warnings()
         if warnings:
             import logging
@@ -206,10 +210,31 @@ class Simulation(Driven):
         """
         return self._law is None
 
+    def snapshot(self) -> _core.Snapshot:
+        """Copy all that changes, to go back to it later.
+
+        Returns
+        -------
+        Snapshot
+
+        Examples
+        --------
+        >>> import ndda
+        >>> simulation = Simulation(ndda.parse(ndda.EXAMPLE))
+        >>> kept = simulation.snapshot()
+        >>> simulation.step(10)
+        >>> simulation.restore(kept)
+        >>> simulation.step_count
+        0
+        """
+        kept = super().snapshot()
+        self._frames_of[kept] = list(self._frames)
+        return kept
+
     def restore(self, snapshot: _core.Snapshot) -> None:
         """Go on from a snapshot of the same scene, bit for bit.
 
-        Frames and rows of the history from after it are dropped.
+        The rows of `history` are those that led to it, and so are the frames of `show`; of another simulation's snapshot there are none.
 
         Parameters
         ----------
@@ -232,10 +257,10 @@ class Simulation(Driven):
         0
         """
         super().restore(snapshot)
-        last_s = self._frames[-1][0] if self._frames else 0.0
-        # A frame of the same time may be of other velocities: that of the present state is kept when it is next asked for.
-        self._frames = [one for one in self._frames if one[0] < self.time_s]
-        if last_s >= self.time_s:
+        shows_the_present = bool(self._frames) and self._frames[-1][0] >= self.time_s
+        # A frame of the same time may be of other velocities: that of the present state is kept anew.
+        self._frames = [one for one in self._frames_of.get(snapshot, ()) if one[0] < self.time_s]
+        if shows_the_present:
             # What has stopped has no frame.
             with suppress(_core.StopError):
                 self.keep_frame()
@@ -254,7 +279,8 @@ class Simulation(Driven):
         if self._frames and self._frames[-1][0] >= self.time_s:
             return
         self._folder = self._folder or tempfile.TemporaryDirectory(prefix="ndda")
-        file = os.path.join(self._folder.name, f"frame_{len(self._frames):06}.vtu")
+        file = os.path.join(self._folder.name, f"frame_{self._files:06}.vtu")
+        self._files += 1
         with open(file, "wb") as out:
             out.write(self._frame())
         self._frames.append((self.time_s, file))
