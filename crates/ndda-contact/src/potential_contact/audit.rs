@@ -14,7 +14,7 @@ use crate::potential::contact_potential::PotentialField;
 use crate::restitution::ContactDamping;
 use crate::room::make_room;
 
-use super::evaluation::for_each_facet;
+use super::forces::for_each_facet;
 use super::{PotentialContact, plan};
 
 impl ContactAudit for PotentialContact {

@@ -1,30 +1,19 @@
 //! The contact potential as a contact model.
 
 use ndda_mesh::{BlockId, BlockSet, TriangleId, Vec3};
-use ndda_ranks::ExactSum;
 
-use crate::assembly::join_if::join_if;
-use crate::assembly::nodal_forces::{self, ScatterScene};
 use crate::assembly::overlap_parts::OverlapParts;
-use crate::assembly::searched_friction;
 use crate::contact_model::ContactModel;
 use crate::friction::bond;
-use crate::friction::facet::FacetScene;
 use crate::friction::law::FrictionLaw;
 use crate::friction::law_table::FrictionLawTable;
 use crate::friction::openings::Moment;
-use crate::friction::patches::PatchScene;
-use crate::friction::twist::couples_of_springs;
-use crate::integration::overlap_pair::ActiveFacet;
 use crate::model::{ContactError, ContactHistory, ContactInput, ContactOutput, ContactReport, FacetContact};
 use crate::pair_stiffness::PairStiffness;
 
 use crate::potential::contact_potential::OverlapLaw;
 
-use crate::restitution::ContactDamping;
-
 use super::PotentialContact;
-use super::evaluation::{FacetRows, GRAIN_FACETS, place_forces};
 
 impl ContactModel for PotentialContact {
     fn add_forces(
@@ -33,119 +22,24 @@ impl ContactModel for PotentialContact {
         history: &mut ContactHistory,
         output: &mut ContactOutput,
     ) -> Result<ContactReport, ContactError> {
-        let state_len = self.joints.as_ref().map_or(0, FrictionLawTable::state_len);
-        history.expect_state(state_len)?;
+        history.expect_state(self.joints.as_ref().map_or(0, FrictionLawTable::state_len))?;
         self.place_openings(input, history, Moment::Next);
-        if self.joints.as_ref().is_some_and(|joints| joints.hold_together() && !history.begun) {
+        if self.joints.as_ref().is_some_and(FrictionLawTable::hold_together) && !history.begun {
             self.form_bonds(input, history)?;
         }
         self.integrate(input)?;
         let Some((_, field)) = &self.field else { return Ok(ContactReport::default()) };
         let (candidates, integrals) = (&self.candidates, &self.integrals);
         let mut report = self.reporter.report(input, candidates, integrals, &self.frames, field)?;
-        let blocks_of = |touch: &ActiveFacet| (touch.owner, touch.target);
         self.place_penalties(input)?;
-        if self.potential.law() != OverlapLaw::Linear
-            && let Some((ratio, t)) = self.overlaps.deepest()
-        {
-            let touch = &self.integrals.touching()[t];
-            report.max_penetration_ratio = ratio;
-            report.deepest = self.integrals.overlaps_of(touch).first().map(|hit| (touch.triangle, hit.tet));
-        }
-        self.bond_forces.clear();
-        if let Some(joints) = self.joints.as_ref().filter(|_| !history.bonds.is_empty()) {
-            let overloaded = bond::break_overloaded(
-                joints,
-                &self.integrals,
-                &self.penalty_of_facet,
-                input,
-                (history, &mut self.new_state),
-            );
-            (report.bond_overload, report.overloaded_bonds) = overloaded;
-            bond::find_forces(joints, input, &history.bonds, &mut self.bond_forces);
-        }
-        let has_friction = self.rubs_faces() && !input.bodies.is_empty() && !input.without_friction;
+        self.report_deepest(&mut report);
+        self.load_bonds(input, history, &mut report);
         self.damp(input, history);
-        let (adjacency, faces, integrals) = (&mut self.adjacency, &mut self.faces, &self.integrals);
-        let sort = || {
-            adjacency.arrange(input.blocks.len(), integrals.touching().iter().map(blocks_of));
-            if has_friction {
-                faces.arrange(integrals);
-            }
-        };
-        let rows = FacetRows {
-            forces: &mut self.forces,
-            outcomes: &mut self.outcomes,
-            on_host: &mut self.on_host,
-            state: &mut self.state_of_facet,
-        };
-        let elastic_pa = self.penalty_pa;
-        let joints = self.joints.as_ref();
-        let couples = couples_of_springs(joints, input, (integrals, &self.hulls));
-        let facets = FacetScene { input, joints, history, elastic_pa, couples };
-        let damping = self.damping.as_deref().filter(|_| !input.bodies.is_empty());
-        let left_pa = damping.map_or(&self.penalty_of_facet[..], ContactDamping::left_pa);
-        let tilt_n_m = damping.map_or(&[][..], ContactDamping::tilt_n_m);
-        let dashpot_n = damping.map_or(&[][..], ContactDamping::shear_n);
-        let place = || place_forces(rows, &facets, integrals, (left_pa, dashpot_n), &self.hulls);
-        join_if(integrals.touching().len() > GRAIN_FACETS, place, sort);
-        if let Some(damping) = damping {
-            report.dashpot_error_m_s =
-                damping.error_m_s(&self.integrals, (&self.forces, &self.outcomes), input.dt_s);
-            damping.remember_dashpots(input, &self.integrals, (&self.forces, &self.outcomes), history);
-        }
-        let bodies = damping.map_or(input.bodies, ContactDamping::bodies);
-        let patch_input = ContactInput { bodies, ..*input };
-        let patches = self.joints.as_ref().filter(|_| has_friction).map(|joints| PatchScene {
-            input: &patch_input,
-            integrals: &self.integrals,
-            joints,
-            hulls: &self.hulls,
-            bonds: &self.bond_forces,
-        });
-        if let Some(scene) = &patches {
-            self.faces.begin(scene, &mut self.forces, history);
-        }
-        let base = ScatterScene {
-            blocks: input.blocks,
-            position: (couples.is_some() || damping.is_some()).then_some(input.position),
-            tilt_n_m,
-            integrals: &self.integrals,
-            adjacency: &self.adjacency,
-            hulls: &self.hulls,
-            forces: &[],
-            on_host: &self.on_host,
-            stiffness_pa: &self.penalty_of_facet,
-            curvature_pa_m: &self.curvature_of_facet,
-        };
-        let scatter = ScatterScene { forces: &self.forces, ..base };
-        self.push_n.clear();
-        let asks_nodes = patches.as_ref().is_some_and(|scene| self.faces.asks_nodes(scene));
-        if asks_nodes {
-            self.push_n.resize(input.position.len(), Vec3::zeros());
-        }
-        let mut into = ContactOutput {
-            force: if asks_nodes { &mut self.push_n } else { &mut *output.force },
-            friction_force: &mut *output.friction_force,
-            stiffness: &mut *output.stiffness,
-        };
-        match input.ranks {
-            None => nodal_forces::add(&scatter, &mut into),
-            Some(ranks) => self.shared_forces.add(ranks, &scatter, &mut into)?,
-        }
-        if let Some(scene) = &patches {
-            report.friction_left_m_s = self.faces.find(scene, &self.push_n, &mut self.forces, history);
-            if asks_nodes {
-                searched_friction::add_all(output.force, &self.push_n);
-            }
-            let scatter = ScatterScene { forces: &self.forces, position: Some(input.position), ..base };
-            searched_friction::add(&scatter, &self.faces, output);
-        }
+        self.place_facet_forces(input, history);
+        self.remember_dashpots(input, history, &mut report);
+        self.add_to_nodes(input, history, output, &mut report)?;
         bond::add_forces(input.blocks, &self.bond_forces, output);
-        if !self.openings.is_empty() {
-            let works = self.outcomes.iter().map(|outcome| outcome.dilation_work_j);
-            report.dilation_work_j = works.collect::<ExactSum>().value();
-        }
+        self.report_dilation(&mut report);
         if self.joints.is_some() {
             self.remember(input, history);
         }

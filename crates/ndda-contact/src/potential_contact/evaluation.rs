@@ -1,31 +1,23 @@
-//! Stages of an evaluation: candidate pairs, frames, penalties, forces of facets, and their stiffness.
+//! What forces of contact are found from, and what is left of them: candidate pairs, frames, integrals and penalties; what facets remember; stiffness.
 
 use ndda_mesh::geometry::triangle_area_vector;
 use ndda_mesh::{Mat3, Vec3};
-use rayon::prelude::*;
 
-use crate::affine::convex_target::ConvexBlocks;
 use crate::affine::surface::BlockFaces;
 use crate::assembly::overlap_parts::OverlapParts;
 use crate::assembly::tangent::{self, Target};
 use crate::friction::bond_formation;
-use crate::friction::facet::{FacetForce, FacetOutcome, FacetScene, KeptShear, element_of};
+use crate::friction::facet::{KeptShear, element_of};
 use crate::friction::law_table::FrictionLawTable;
 use crate::friction::openings::{self, Moment};
-use crate::integration::integrals::Integrals;
-use crate::integration::pair_moments::OnTarget;
 use crate::integration::scene::Scene;
 use crate::model::{ContactError, ContactHistory, ContactInput, FacetMemory};
 use crate::pair_stiffness::PairStiffness;
-use crate::restitution::DampingScene;
 
 use crate::potential::contact_potential::{OverlapLaw, PotentialField};
 use crate::room::make_room;
 
 use super::PotentialContact;
-
-/// Facets below which a second thread costs more than it brings.
-pub(super) const GRAIN_FACETS: usize = 128;
 
 impl PotentialContact {
     /// Forms the bonds of blocks where they are meshed: where contact is evaluated first, a step ahead, faces that are glued have parted.
@@ -117,21 +109,6 @@ impl PotentialContact {
     /// Whether a friction law acts on whole faces.
     pub(super) fn rubs_faces(&self) -> bool {
         self.joints.as_ref().is_some_and(FrictionLawTable::act_on_faces)
-    }
-
-    /// Finds the damping of the step, where there is any.
-    pub(super) fn damp(&mut self, input: &ContactInput, history: &mut ContactHistory) {
-        let Some(damping) = self.damping.as_mut().filter(|_| !input.bodies.is_empty()) else { return };
-        let scene = DampingScene {
-            input,
-            integrals: &self.integrals,
-            hulls: &self.hulls,
-            openings: &self.openings,
-            joints: self.joints.as_ref(),
-            penalty_pa: &self.penalty_of_facet,
-            curvature_pa_m: &self.curvature_of_facet,
-        };
-        damping.find(&scene, history);
     }
 
     /// Takes over what facets remember; what did not touch is forgotten.
@@ -238,67 +215,6 @@ fn weights_in_triangle(corners: &[Vec3; 3], x: &Vec3) -> [f64; 3] {
     };
     let (b, c) = (part(2, 0), part(0, 1));
     [1.0 - b - c, b, c]
-}
-
-/// Output of [`place_forces`]: forces of facets, what laws that act on facets find, reactions on host tetrahedra, and the numbers of the laws.
-pub(super) struct FacetRows<'a> {
-    pub(super) forces: &'a mut Vec<FacetForce>,
-    pub(super) outcomes: &'a mut Vec<FacetOutcome>,
-    pub(super) on_host: &'a mut Vec<OnTarget>,
-    pub(super) state: &'a mut Vec<f64>,
-}
-
-/// The forces of all facets, and what hosts feel of them.
-pub(super) fn place_forces(
-    FacetRows { forces, outcomes, on_host, state }: FacetRows,
-    scene: &FacetScene,
-    integrals: &Integrals,
-    (penalty_of_facet, dashpot_n): (&[f64], &[Vec3]),
-    hulls: &ConvexBlocks,
-) {
-    let touching = integrals.touching();
-    let state_len = scene.history.law_state_len as usize;
-    make_room(forces, touching.len());
-    forces.resize(touching.len(), FacetForce::default());
-    state.resize(touching.len() * state_len, 0.0);
-    let has_laws = state_len > 0 || scene.joints.is_some_and(|joints| !joints.act_on_faces_only());
-    outcomes.clear();
-    make_room(outcomes, if has_laws { touching.len() } else { 0 });
-    outcomes.resize(if has_laws { touching.len() } else { 0 }, FacetOutcome::default());
-    let place = |force: &mut FacetForce, t: usize, found: (Option<&mut FacetOutcome>, &mut [f64])| {
-        let (overlaps, sums) = (integrals.overlaps_of(&touching[t]), integrals.sums_of(&touching[t]));
-        let pushes = (t, penalty_of_facet[t], dashpot_n.get(t));
-        *force = scene.force(&touching[t], overlaps, sums, pushes, found);
-    };
-    if state_len > 0 {
-        let entries = forces.par_iter_mut().zip(outcomes).zip(state.par_chunks_mut(state_len)).enumerate();
-        entries
-            .with_min_len(GRAIN_FACETS / 2)
-            .for_each(|(t, ((force, outcome), state))| place(force, t, (Some(outcome), state)));
-    } else if has_laws {
-        let entries = forces.par_iter_mut().zip(outcomes).enumerate().with_min_len(GRAIN_FACETS / 2);
-        entries.for_each(|(t, (force, outcome))| place(force, t, (Some(outcome), &mut [])));
-    } else {
-        for_each_facet(forces, |(t, force)| place(force, t, (None, &mut [])));
-    }
-    on_host.clear();
-    if hulls.count_affine() > 0 {
-        on_host.resize(touching.len(), OnTarget::default());
-        for_each_facet(on_host, |(t, on_host)| {
-            if hulls.affine_target(touching[t].target).is_some() {
-                *on_host = integrals.overlaps_of(&touching[t])[0].on_target;
-            }
-        });
-    }
-}
-
-/// Fills a list with one entry per facet, on all threads if it is long.
-pub(super) fn for_each_facet<T: Send>(entries: &mut [T], fill: impl Fn((usize, &mut T)) + Send + Sync) {
-    if entries.len() > GRAIN_FACETS {
-        entries.par_iter_mut().enumerate().with_min_len(GRAIN_FACETS / 2).for_each(fill);
-    } else {
-        entries.iter_mut().enumerate().for_each(fill);
-    }
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@ mod batch;
 pub mod broad_phase;
 mod contact_model;
 mod evaluation;
+mod forces;
 pub mod friction;
 pub mod integration;
 mod left_by_faces;
