@@ -12,6 +12,7 @@ mod crossed;
 mod draw;
 mod fall;
 pub mod files;
+mod holes;
 pub mod map;
 mod passage;
 #[cfg(feature = "plots")]
@@ -151,6 +152,8 @@ pub struct Model {
     pub unnamed: Vec<(u32, usize)>,
     /// The part of the terrain that has neither a class nor a zone, in words.
     pub bare: Option<String>,
+    /// What the terrain lacks of heights within, in words.
+    pub holes: Option<String>,
 }
 
 impl Model {
@@ -176,7 +179,8 @@ impl Model {
             .map_err(|message| refuse("rockfall.terrain", message))?;
         let unnamed = classes.as_ref().map_or_else(Vec::new, |classes| classes.without_zone(&rockfall));
         let bare = classes.and_then(|classes| terrain.bare_of(&classes));
-        let model = Self { rockfall, terrain, unnamed, bare, loaded };
+        let holes = terrain.holes();
+        let model = Self { rockfall, terrain, unnamed, bare, holes, loaded };
         model.meets_the_terrain()?;
         let cells = model.reach_cells().map(|n| n as f64);
         if cells[0] * cells[1] > MOST_CELLS {

@@ -1,6 +1,6 @@
 //! The contact potential as a contact model.
 
-use ndda_mesh::{BlockId, BlockSet, TriangleId, Vec3};
+use ndda_mesh::{BlockId, BlockSet, TriangleId};
 
 use crate::assembly::overlap_parts::OverlapParts;
 use crate::contact_model::ContactModel;

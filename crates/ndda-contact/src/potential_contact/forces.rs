@@ -11,7 +11,6 @@ use crate::assembly::nodal_forces::{self, ScatterScene};
 use crate::assembly::searched_friction;
 use crate::friction::bond;
 use crate::friction::facet::{FacetForce, FacetOutcome, FacetScene};
-use crate::friction::law_table::FrictionLawTable;
 use crate::friction::patches::PatchScene;
 use crate::friction::twist::couples_of_springs;
 use crate::integration::integrals::Integrals;

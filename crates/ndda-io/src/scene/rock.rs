@@ -300,7 +300,7 @@ impl Default for DiscRule {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Voronoi {
-    /// Number of points; fewer fit when they keep too large a distance.
+    /// Number of points in the rock, and of cells; fewer fit when they keep too large a distance.
     pub count: u32,
     /// Distance that points keep where they can [m]. Default: 0.
     #[serde(default)]

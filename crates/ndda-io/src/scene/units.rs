@@ -219,7 +219,16 @@ impl<'a> Resolver<'a> {
                 ),
             }
         } else if !node.word(self.text).is_empty() {
-            self.refuse(node, "a unit inside a unit", "leave out one of the two");
+            let inner = node.word(self.text);
+            if DIMENSIONS.iter().any(|d| d.unit(inner).is_some()) {
+                self.refuse(node, "a unit inside a unit", "leave out one of the two");
+            } else {
+                self.refuse(
+                    node,
+                    format!("`{inner}` inside a unit"),
+                    format!("write the unit inside of `{inner}`, around each number"),
+                );
+            }
         } else {
             node.children.iter().for_each(|child| self.convert_numbers(child, unit));
         }

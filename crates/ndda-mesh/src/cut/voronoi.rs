@@ -22,7 +22,10 @@ pub struct VoronoiOptions {
     pub sliver_width_m: f64,
 }
 
-/// Uniformly random seeds in the domain's bounding box that keep a distance from each other where they can.
+/// Draws for one seed in a domain that fills little of its bounding box.
+const MOST_DRAWS: usize = 10_000;
+
+/// Uniformly random seeds in the domain that keep a distance from each other where they can.
 ///
 /// A draw nearer than `least_distance_m` to an earlier seed is drawn again, up to 30 times. Fewer seeds than asked
 /// for come back when there is no room left.
@@ -32,8 +35,9 @@ pub fn random_seeds(domain: &Domain, count: usize, least_distance_m: f64, seed: 
     let mut grid = Grid::new(&bounds, count);
     let mut seeds: Vec<Vec3> = Vec::new();
     for _ in 0..count {
-        for _ in 0..30 {
-            let at = Vec3::from_fn(|i, _| stream.between(bounds.min[i], bounds.max[i]));
+        let draws =
+            (0..MOST_DRAWS).map(|_| Vec3::from_fn(|i, _| stream.between(bounds.min[i], bounds.max[i])));
+        for at in draws.filter(|at| domain.holds(at)).take(30) {
             if least_distance_m <= 0.0 || !grid.has_near(&seeds, &at, least_distance_m) {
                 grid.add(seeds.len() as u32, &at);
                 seeds.push(at);

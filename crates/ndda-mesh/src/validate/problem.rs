@@ -100,7 +100,7 @@ pub enum MeshProblem {
     #[error("tetrahedra that name a node twice {}: remove them", .0.list(u32::to_string))]
     RepeatedNode(Found<u32>),
     /// Tetrahedra of negative volume, with it [m³].
-    #[error("inverted tetrahedra {}: swap two nodes of each", .0.list(with_volume))]
+    #[error("inverted tetrahedra {}: swap two nodes of each, as `ndda mesh FILE --fix orient` does", .0.list(with_volume))]
     Inverted(Found<(u32, f64)>),
     /// Tetrahedra whose volume [m³] is lost in rounding.
     #[error("flat tetrahedra {}: remesh there, or move a node off the plane of the others", .0.list(with_volume))]
@@ -192,7 +192,7 @@ mod tests {
         };
         assert_eq!(
             error.to_string(),
-            "block \"ramp\": inverted tetrahedra (1): 4 (-1.250e-1 m³): swap two nodes of each\n\
+            "block \"ramp\": inverted tetrahedra (1): 4 (-1.250e-1 m³): swap two nodes of each, as `ndda mesh FILE --fix orient` does\n\
              block \"b\": no tetrahedra (0 nodes): mesh the volume, not only its surface"
         );
     }

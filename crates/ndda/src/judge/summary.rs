@@ -12,6 +12,7 @@ use crate::judge::verdict;
 use crate::lean;
 use crate::machine;
 use crate::rocking::{self, Rocking};
+use crate::run::motion::moved_while_settling;
 use crate::run::recorder::Recorder;
 use crate::summary::{
     BlockEnd, BoltEnd, Counts, Invariants, Judgement, LabelWord, MonitorEnd, Named, ReferenceError, Status,
@@ -201,6 +202,9 @@ fn advice(simulation: &Simulation, scene: &Scene) -> Vec<String> {
             "numerical error added {:.2} % to the energy: reduce step_s",
             100.0 * worst.energy_gain
         ));
+    }
+    if scene.settle.is_some() && scene.stages.is_empty() {
+        advice.extend(moved_while_settling(simulation));
     }
     advice
 }

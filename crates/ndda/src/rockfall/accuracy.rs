@@ -7,6 +7,8 @@ use serde::{Deserialize, Serialize};
 const MOST_ENERGY: f64 = 0.02;
 /// Depth of a contact over the width of the boulder: it leaves the boulder up to π d/2 from where it should be, which is less than ground is known to.
 const MOST_DEPTH: f64 = 0.1;
+/// Part by which the speed that is recommended for a smaller depth exceeds what the law of the depth asks for.
+const MARGIN: f64 = 1.2;
 /// Energy by which friction may be off Coulomb's law, over the largest kinetic energy.
 const MOST_FRICTION: f64 = 0.01;
 
@@ -75,8 +77,8 @@ impl Accuracy {
             }
         }
         if self.depth > MOST_DEPTH {
-            // The depth of a corner goes with the root of the speed that stiffness is chosen for.
-            let needed = impact_m_s * (self.depth / MOST_DEPTH).powi(2);
+            // The depth of a corner goes about with the root of the speed that stiffness is chosen for.
+            let needed = (MARGIN * impact_m_s * (self.depth / MOST_DEPTH).powi(2)).ceil();
             reasons.push(format!(
                 "depth of contact: {:.1} % of the boulder's width, limit {:.0} %: take rockfall.detail.impact_m_s: {needed:.0}",
                 percent(self.depth),

@@ -40,7 +40,7 @@ impl fmt::Display for Model {
         if self.unnamed.len() > LISTED {
             write!(f, "\nand {} more", self.unnamed.len() - LISTED)?;
         }
-        self.bare.iter().try_for_each(|bare| write!(f, "\n{bare}"))
+        self.bare.iter().chain(&self.holes).try_for_each(|lack| write!(f, "\n{lack}"))
     }
 }
 

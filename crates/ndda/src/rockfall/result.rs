@@ -174,8 +174,12 @@ fn warnings(model: &Model, falls: &[Fall]) -> Vec<String> {
     }
     let ends = ends(falls);
     if ends.still_moving > 0 {
+        let lines = model.rockfall.lines.len();
+        let may_reach_more =
+            |fall: &Fall| fall.end == End::StillMoving && (0..lines).any(|k| first_at(fall, k).is_none());
+        let meanwhile = if falls.iter().any(may_reach_more) { "probabilities of reach" } else { "runouts" };
         warnings.push(format!(
-            "{} of {count} boulders still moved after {} s: raise time.end_s; until then probabilities of reach are lower bounds",
+            "{} of {count} boulders still moved after {} s: raise time.end_s; until then {meanwhile} are lower bounds",
             ends.still_moving, model.loaded.scene.time.end_s
         ));
     }
@@ -200,6 +204,7 @@ fn warnings(model: &Model, falls: &[Fall]) -> Vec<String> {
         ));
     }
     warnings.extend(model.bare.clone());
+    warnings.extend(model.holes.clone());
     warnings.extend(laws_cut_off(model));
     warnings.extend(releases_cut_off(model));
     warnings

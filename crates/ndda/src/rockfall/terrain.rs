@@ -66,7 +66,11 @@ impl Terrain {
         Self::of_grid(&grid, zones, classes)
     }
 
-    fn of_grid(grid: &TerrainGrid, zones: &[Zone], classes: Option<&Classes>) -> Result<Self, String> {
+    pub(super) fn of_grid(
+        grid: &TerrainGrid,
+        zones: &[Zone],
+        classes: Option<&Classes>,
+    ) -> Result<Self, String> {
         sound(grid)?;
         let size = [grid.heights_m.first().map_or(0, Vec::len), grid.heights_m.len()];
         let heights_m = grid.heights_m.iter().flatten().map(|z| z.unwrap_or(f64::NAN)).collect();

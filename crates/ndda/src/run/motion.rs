@@ -10,6 +10,7 @@ use ndda_solver::{BodyKind, Simulation, Sink, SinkError, View};
 use serde::{Deserialize, Serialize};
 
 use super::schedule::Schedule;
+use crate::numbers::length;
 use crate::summary::{BlockMotion, Course, Motion};
 
 /// A block has moved if a point of it has gone farther than this part of the distance from its mass centre to its farthest node.
@@ -141,6 +142,30 @@ fn farthest_m(simulation: &Simulation, block: BlockId) -> f64 {
     let (now, start) = (&simulation.state().position, simulation.counted_from());
     let squares = simulation.blocks().nodes_of(block).map(|n| (now[n] - start[n]).norm_squared());
     squares.fold(0.0, f64::max).sqrt()
+}
+
+/// Part of its radius from which on the way of a block to rest is worth a line.
+const SETTLED_FAR: f64 = 5e-3;
+
+/// How far the block that went farthest beside its size moved before time began, in words; none where none went far.
+pub(crate) fn moved_while_settling(simulation: &Simulation) -> Option<String> {
+    let blocks = simulation.blocks();
+    let (drawn, start) = (&blocks.rest_position, simulation.start_position());
+    let went = |block: BlockId| {
+        let squares = blocks.nodes_of(block).map(|n| (start[n] - drawn[n]).norm_squared());
+        let gone_m = squares.fold(0.0, f64::max).sqrt();
+        (gone_m / radius_m(&simulation.shape(block).operator), gone_m, block)
+    };
+    let free = blocks.ids().filter(|&block| is_movable(simulation, block));
+    let (part, gone_m, block) = free.map(went).max_by(|a, b| a.0.total_cmp(&b.0).then(b.2.cmp(&a.2)))?;
+    (part > SETTLED_FAR).then(|| {
+        format!(
+            "block `{}` moved by {}, {:.1} % of its radius, while the scene settled; displacements count from there",
+            blocks.names[block.index()],
+            length(gone_m),
+            100.0 * part
+        )
+    })
 }
 
 /// Displacement of the mass centre [m].

@@ -363,6 +363,12 @@ impl Check<'_> {
             let message = format!("{length} m: must be from 0 to below the spacing of {spacing_m} m");
             self.error(format!("{path}.spacing_scatter.{name}"), message, "distances stay above 0");
         }
+        let wide = 0.4 * spacing_m..spacing_m;
+        if let Some(("deviation_m", _)) = length.filter(|(_, length)| wide.contains(length)) {
+            let message = "distances below a tenth of spacing_m are drawn again, which makes their mean larger: by 1.3, 8 and 20 % at 0.4, 0.6 and 0.8 of spacing_m";
+            let help = "lower it or spacing_m, or choose Exponential, whose mean is spacing_m";
+            self.warn(Code::Inexact, format!("{path}.spacing_scatter.deviation_m"), message, help);
+        }
     }
 }
 
