@@ -4,6 +4,7 @@ mod change;
 mod drive;
 mod judged;
 mod saved;
+mod snapshot;
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -11,12 +12,13 @@ use std::sync::Arc;
 use ndda_contact::FacetContact;
 use ndda_io::diagnostic::SceneErrors;
 use ndda_io::{checkpoint, read};
-use ndda_solver::{RestoreError, Sample, Settled, Simulation, SinkError, Snapshot, StartSnapshot, StepError};
+use ndda_solver::{Sample, Settled, Simulation, SinkError, StartSnapshot, StepError};
 
 pub use change::ChangeError;
 pub use judged::{Disturbance, Disturbed};
 pub use ndda_mesh::{BlockId, Vec3};
 pub use saved::{LoadError, SaveError};
+pub use snapshot::{DriverRestoreError, DriverSnapshot};
 
 use judged::Course;
 
@@ -67,40 +69,6 @@ pub struct Driver {
 
 /// Parts of a program's own, made anew whenever a simulation is built.
 pub type Parts = Arc<dyn Fn() -> Choices + Send + Sync>;
-
-/// State of a [`Driver`]; it can be restored in any driver of the same scene.
-#[derive(Clone, Debug)]
-pub struct DriverSnapshot {
-    /// Text of the scene at the start, and now.
-    origin: Arc<str>,
-    scene: String,
-    snapshot: Snapshot,
-    stopped: Option<StepError>,
-    /// What was sampled on the way to it.
-    history: Vec<Sample>,
-    disturbed: Option<Disturbed>,
-    /// Parts that the scene does not name, in words.
-    own: Option<String>,
-}
-
-/// Why a snapshot cannot be restored.
-#[derive(Debug, thiserror::Error)]
-pub enum DriverRestoreError {
-    /// The snapshot is of another scene.
-    #[error("the snapshot is of another scene: restore it in a simulation of the scene that it was taken of")]
-    OtherScene,
-    /// It is of a simulation with other parts than the scene's.
-    #[error(
-        "the snapshot is of a simulation with {0}, and this one was begun without it: restore it in a simulation that has it"
-    )]
-    Own(String),
-    /// Meshes that the scene names have changed.
-    #[error(transparent)]
-    OtherProblem(#[from] RestoreError),
-    /// The scene as it was cannot be built any more.
-    #[error(transparent)]
-    Scene(#[from] SceneErrors),
-}
 
 /// Name and text of a scene for examples: a rigid block falls for a second.
 pub const EXAMPLE: (&str, &str) = (
@@ -235,39 +203,6 @@ impl Driver {
         contact_rows(&self.model.simulation, &mut self.facets)
     }
 
-    /// A copy of all that changes, and of the history so far.
-    pub fn snapshot(&self) -> DriverSnapshot {
-        let (origin, scene) = (self.origin.clone(), self.model.loaded.text.clone());
-        let (snapshot, stopped) = (self.model.simulation.snapshot(), self.stopped.clone());
-        let (history, disturbed, own) = (self.history.clone(), self.course.disturbed, self.own.clone());
-        DriverSnapshot { origin, scene, snapshot, stopped, history, disturbed, own }
-    }
-
-    /// Goes on from a snapshot of the same scene, bit for bit, with the history that led to it.
-    ///
-    /// # Errors
-    /// [`DriverRestoreError`] when it is of another scene; nothing has changed then.
-    pub fn restore(&mut self, snapshot: &DriverSnapshot) -> Result<(), DriverRestoreError> {
-        if snapshot.origin != self.origin {
-            return Err(DriverRestoreError::OtherScene);
-        }
-        if let (Some(own), None) = (&snapshot.own, &self.own) {
-            return Err(DriverRestoreError::Own(own.clone()));
-        }
-        if snapshot.scene == self.model.loaded.text {
-            self.model.simulation.restore(snapshot.snapshot.clone())?;
-        } else {
-            let mut model = self.build(&snapshot.scene, &[])?;
-            model.simulation.restore(snapshot.snapshot.clone())?;
-            self.put(model);
-        }
-        self.stopped.clone_from(&snapshot.stopped);
-        self.course.forget_label();
-        self.course.disturbed = snapshot.disturbed;
-        self.history.clone_from(&snapshot.history);
-        Ok(())
-    }
-
     /// A frame of the present state as a VTK file (`.vtu`), with the fields that the scene's `output` names.
     ///
     /// # Errors
@@ -315,7 +250,7 @@ mod tests {
     use crate::Run;
 
     /// The cube of `scenes/bounce.ron` just past its first impact.
-    fn bounce() -> Model {
+    pub(super) fn bounce() -> Model {
         let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/bounce.ron");
         Model::open(&file, &["time.end_s=0.12".into()]).unwrap()
     }
@@ -344,13 +279,6 @@ mod tests {
     }
 
     #[test]
-    fn a_snapshot_of_another_scene_is_refused() {
-        let fall = Driver::new(Model::from_text(EXAMPLE.1).unwrap()).unwrap();
-        let mut driver = Driver::new(bounce()).unwrap();
-        assert!(matches!(driver.restore(&fall.snapshot()), Err(DriverRestoreError::OtherScene)));
-    }
-
-    #[test]
     fn a_simulation_with_a_law_of_its_own_goes_on_only_with_one() {
         use crate::build::Choices;
         let slippery = || {
@@ -374,34 +302,5 @@ mod tests {
         assert!(matches!(Driver::load(&file, None), Err(LoadError::Own { .. })));
         Driver::load(&file, Some(parts.clone())).unwrap().restore(&driver.snapshot()).unwrap();
         begin().unwrap().restore(&driver.snapshot()).unwrap();
-    }
-
-    #[test]
-    fn a_snapshot_brings_the_history_that_led_to_it_and_not_that_of_another_run() {
-        let fall = || Driver::new(Model::from_text(EXAMPLE.1).unwrap()).unwrap();
-        let (mut struck, mut plain) = (fall(), fall());
-        struck.set_velocity(BlockId(0), Vec3::x(), Vec3::zeros()).unwrap();
-        struck.step(20).unwrap();
-        let (snapshot, history) = (struck.snapshot(), struck.history().to_vec());
-        plain.step(30).unwrap();
-        assert_ne!(plain.history()[10], history[10]);
-        plain.restore(&snapshot).unwrap();
-        assert_eq!(plain.history(), history);
-        plain.step(10).unwrap();
-        struck.step(10).unwrap();
-        assert_eq!(plain.history(), struck.history());
-    }
-
-    #[test]
-    fn a_restored_snapshot_goes_on_with_the_same_bits() {
-        let mut driver = Driver::new(bounce()).unwrap();
-        driver.step(1900).unwrap();
-        let snapshot = driver.snapshot();
-        driver.step(300).unwrap();
-        let end = driver.state_crc32();
-        driver.restore(&snapshot).unwrap();
-        assert_ne!(driver.state_crc32(), end);
-        driver.step(300).unwrap();
-        assert_eq!(driver.state_crc32(), end);
     }
 }

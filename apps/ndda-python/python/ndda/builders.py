@@ -4384,7 +4384,7 @@ class Voronoi(Builder):
     Parameters
     ----------
     count : int
-        Number of points; fewer fit when they keep too large a distance.
+        Number of points in the rock, and of cells; fewer fit when they keep too large a distance.
     least_distance_m : float, optional
         Distance that points keep where they can [m]. Default: 0.
 
