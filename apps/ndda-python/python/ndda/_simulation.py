@@ -221,11 +221,7 @@ class Simulation(Driven):
         --------
         >>> import ndda
         >>> simulation = Simulation(ndda.parse(ndda.EXAMPLE))
-        >>> kept = simulation.snapshot()
-        >>> simulation.step(10)
-        >>> simulation.restore(kept)
-        >>> simulation.step_count
-        0
+        >>> simulation.restore(simulation.snapshot())
         """
         kept = super().snapshot()
         self._frames_of[kept] = list(self._frames)

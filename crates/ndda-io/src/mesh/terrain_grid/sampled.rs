@@ -84,26 +84,24 @@ fn add(grid: &mut TerrainGrid, below: &mut Below, [a, b, c]: &[Vec3; 3], same: f
         // Places on an edge of triangles are of both, in spite of rounding.
         ((low - 1e-9).ceil().max(0.0) as usize, ((high + 1e-9).floor().max(0.0) as usize).min(last))
     });
-    for j in j0..=j1 {
-        for i in i0..=i1 {
-            let [x, y] = [grid.origin_m[0] + i as f64 * step, grid.origin_m[1] + j as f64 * step];
-            let of_b = ((x - a.x) * (c.y - a.y) - (y - a.y) * (c.x - a.x)) / area;
-            let of_c = ((b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x)) / area;
-            if of_b < -1e-9 || of_c < -1e-9 || of_b + of_c > 1.0 + 1e-9 {
-                continue;
-            }
-            let z = a.z + of_b * (b.z - a.z) + of_c * (c.z - a.z);
-            if area < 0.0 {
-                let [low, high] = below[j][i].unwrap_or([z; 2]);
-                below[j][i] = Some([low.min(z), high.max(z)]);
-                continue;
-            }
-            let height = &mut grid.heights_m[j][i];
-            if let Some(known) = height.filter(|known| (known - z).abs() > same) {
-                return Err(overhang([x, y], [known, z]));
-            }
-            *height = Some(z);
+    for (j, i) in (j0..=j1).flat_map(|j| (i0..=i1).map(move |i| (j, i))) {
+        let [x, y] = [grid.origin_m[0] + i as f64 * step, grid.origin_m[1] + j as f64 * step];
+        let of_b = ((x - a.x) * (c.y - a.y) - (y - a.y) * (c.x - a.x)) / area;
+        let of_c = ((b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x)) / area;
+        if of_b < -1e-9 || of_c < -1e-9 || of_b + of_c > 1.0 + 1e-9 {
+            continue;
         }
+        let z = a.z + of_b * (b.z - a.z) + of_c * (c.z - a.z);
+        if area < 0.0 {
+            let [low, high] = below[j][i].unwrap_or([z; 2]);
+            below[j][i] = Some([low.min(z), high.max(z)]);
+            continue;
+        }
+        let height = &mut grid.heights_m[j][i];
+        if let Some(known) = height.filter(|known| (known - z).abs() > same) {
+            return Err(overhang([x, y], [known, z]));
+        }
+        *height = Some(z);
     }
     Ok(())
 }
