@@ -152,7 +152,7 @@ pub struct Model {
     pub unnamed: Vec<(u32, usize)>,
     /// The part of the terrain that has neither a class nor a zone, in words.
     pub bare: Option<String>,
-    /// What the terrain lacks of heights within, in words.
+    /// Warning of cells without heights that the terrain encloses; none where there are none.
     pub holes: Option<String>,
 }
 

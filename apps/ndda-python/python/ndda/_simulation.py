@@ -230,7 +230,8 @@ class Simulation(Driven):
     def restore(self, snapshot: _core.Snapshot) -> None:
         """Go on from a snapshot of the same scene, bit for bit.
 
-        The rows of `history` are those that led to it, and so are the frames of `show`; of another simulation's snapshot there are none.
+        The rows of `history` and the frames of `show` become those that led to the snapshot.
+        A snapshot of another simulation brings no frames.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-//! What forces of contact are found from, and what is left of them: candidate pairs, frames, integrals and penalties; what facets remember; stiffness.
+//! Candidate pairs, integrals and penalties, from which forces of contact are found; memory of facets, and stiffness of contact.
 
 use ndda_mesh::geometry::triangle_area_vector;
 use ndda_mesh::{Mat3, Vec3};

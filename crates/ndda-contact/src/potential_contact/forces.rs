@@ -1,5 +1,4 @@
-//! Forces of contact: those of facets, by pressure, damping, springs and bonds; then those on the nodes of blocks, with the friction of faces that is
-//! searched for.
+//! Forces of contact on facets, from pressure, damping, springs and bonds, and on the nodes of blocks, with the friction of faces.
 
 use ndda_mesh::Vec3;
 use ndda_ranks::ExactSum;
@@ -95,7 +94,7 @@ impl PotentialContact {
         let joints = self.joints.as_ref();
         let couples = couples_of_springs(joints, input, (integrals, hulls));
         let scene = FacetScene { input, joints, history, elastic_pa: self.penalty_pa, couples };
-        let damping = self.damping.as_deref().filter(|_| !input.bodies.is_empty());
+        let damping = acting(&self.damping, input);
         let left_pa = damping.map_or(&self.penalty_of_facet[..], ContactDamping::left_pa);
         let dashpot_n = damping.map_or(&[][..], ContactDamping::shear_n);
         let place = || place_forces(rows, &scene, integrals, (left_pa, dashpot_n), hulls);
@@ -109,7 +108,7 @@ impl PotentialContact {
         history: &mut ContactHistory,
         report: &mut ContactReport,
     ) {
-        let Some(damping) = self.damping.as_deref().filter(|_| !input.bodies.is_empty()) else { return };
+        let Some(damping) = acting(&self.damping, input) else { return };
         let found = (&self.forces[..], &self.outcomes[..]);
         report.dashpot_error_m_s = damping.error_m_s(&self.integrals, found, input.dt_s);
         damping.remember_dashpots(input, &self.integrals, found, history);
@@ -125,7 +124,7 @@ impl PotentialContact {
     ) -> Result<(), ContactError> {
         let searches_friction = self.searches_friction(input);
         let Self { integrals, hulls, faces, forces, push_n, .. } = self;
-        let damping = self.damping.as_deref().filter(|_| !input.bodies.is_empty());
+        let damping = acting(&self.damping, input);
         let couples = couples_of_springs(self.joints.as_ref(), input, (integrals, hulls));
         let damped = ContactInput { bodies: damping.map_or(input.bodies, ContactDamping::bodies), ..*input };
         let patches = self.joints.as_ref().filter(|_| searches_friction).map(|joints| PatchScene {
@@ -182,6 +181,11 @@ impl PotentialContact {
             report.dilation_work_j = works.collect::<ExactSum>().value();
         }
     }
+}
+
+/// Damping, if there is any and the motion of blocks is known, which it depends on.
+fn acting<'a>(damping: &'a Option<Box<ContactDamping>>, input: &ContactInput) -> Option<&'a ContactDamping> {
+    damping.as_deref().filter(|_| !input.bodies.is_empty())
 }
 
 /// Output of [`place_forces`]: forces of facets, what laws that act on facets find, reactions on host tetrahedra, and the numbers of the laws.

@@ -15,7 +15,7 @@ pub struct DriverSnapshot {
     scene: String,
     snapshot: Snapshot,
     stopped: Option<StepError>,
-    /// What was sampled on the way to it.
+    /// Samples of energies and momenta from the start up to this state.
     history: Vec<Sample>,
     pub(super) disturbed: Option<Disturbed>,
     /// Parts that the scene does not name, in words.

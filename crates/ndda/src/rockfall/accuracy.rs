@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 const MOST_ENERGY: f64 = 0.02;
 /// Depth of a contact over the width of the boulder: it leaves the boulder up to π d/2 from where it should be, which is less than ground is known to.
 const MOST_DEPTH: f64 = 0.1;
-/// Part by which the speed that is recommended for a smaller depth exceeds what the law of the depth asks for.
+/// Factor on the `impact_m_s` that is recommended, since depth follows its law only roughly.
 const MARGIN: f64 = 1.2;
 /// Energy by which friction may be off Coulomb's law, over the largest kinetic energy.
 const MOST_FRICTION: f64 = 0.01;

@@ -1,10 +1,10 @@
-//! Gaps of a terrain's heights that the terrain encloses.
+//! Cells without heights that the terrain encloses.
 
 use super::terrain::Terrain;
 use crate::numbers::counted;
 
 impl Terrain {
-    /// The cells without heights that the terrain encloses, in words; none where there are none.
+    /// Warning of cells without heights that the terrain encloses; none where there are none.
     pub(super) fn holes(&self) -> Option<String> {
         let [nx, ny] = self.cells();
         let mut is_land: Vec<bool> = (0..nx * ny).map(|cell| self.has(cell % nx, cell / nx)).collect();
@@ -12,7 +12,7 @@ impl Terrain {
             let (i, j) = (cell % nx, cell / nx);
             i == 0 || j == 0 || i + 1 == nx || j + 1 == ny
         };
-        // What can be reached from the border without crossing land is no hole.
+        // Cells without heights that are connected to the border of the grid are outside of the terrain, and no holes.
         let mut outside: Vec<usize> =
             (0..nx * ny).filter(|&cell| is_at_border(cell) && !is_land[cell]).collect();
         outside.iter().for_each(|&cell| is_land[cell] = true);

@@ -139,21 +139,24 @@ pub(crate) fn radius_m(operator: &BlockOperator) -> f64 {
 
 /// How far the farthest node has gone [m].
 fn farthest_m(simulation: &Simulation, block: BlockId) -> f64 {
-    let (now, start) = (&simulation.state().position, simulation.counted_from());
-    let squares = simulation.blocks().nodes_of(block).map(|n| (now[n] - start[n]).norm_squared());
+    farthest_between_m(simulation, block, [simulation.counted_from(), &simulation.state().position])
+}
+
+/// The largest distance of a node of a block between two sets of places of all nodes [m].
+fn farthest_between_m(simulation: &Simulation, block: BlockId, [from, to]: [&[Vec3]; 2]) -> f64 {
+    let squares = simulation.blocks().nodes_of(block).map(|n| (to[n] - from[n]).norm_squared());
     squares.fold(0.0, f64::max).sqrt()
 }
 
-/// Part of its radius from which on the way of a block to rest is worth a line.
+/// A warning says how far settling has moved a block if a point of it has gone farther than this part of the distance from its mass centre to its farthest node.
 const SETTLED_FAR: f64 = 5e-3;
 
-/// How far the block that went farthest beside its size moved before time began, in words; none where none went far.
+/// Warning that settling has moved a block far, of the one that went farthest over its size; none where no block went far.
 pub(crate) fn moved_while_settling(simulation: &Simulation) -> Option<String> {
     let blocks = simulation.blocks();
     let (drawn, start) = (&blocks.rest_position, simulation.start_position());
     let went = |block: BlockId| {
-        let squares = blocks.nodes_of(block).map(|n| (start[n] - drawn[n]).norm_squared());
-        let gone_m = squares.fold(0.0, f64::max).sqrt();
+        let gone_m = farthest_between_m(simulation, block, [drawn, start]);
         (gone_m / radius_m(&simulation.shape(block).operator), gone_m, block)
     };
     let free = blocks.ids().filter(|&block| is_movable(simulation, block));
