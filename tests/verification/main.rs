@@ -21,6 +21,7 @@ mod bound_of_contact;
 mod brazilian_disc;
 mod cantilever;
 mod cavity;
+mod clamped_key;
 mod contact_damping;
 mod contact_fields;
 mod contact_patch;

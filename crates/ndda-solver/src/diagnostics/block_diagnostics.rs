@@ -23,6 +23,7 @@ use crate::diagnostics::kept_turn::KeptTurn;
 use crate::diagnostics::many::each_of_many;
 use crate::diagnostics::rebound::Rebound;
 use crate::diagnostics::ringing::{Quadrature, Ringing};
+use crate::diagnostics::squeeze::Squeeze;
 
 /// Vibrations of this part of the strain of a block that supports hold leave it at rest.
 const AT_REST: f64 = 0.01;
@@ -72,6 +73,7 @@ struct BlockBalance {
     /// Errors left by vibration and jumps of forces.
     ringing: Ringing,
     hops: Hops,
+    squeeze: Squeeze,
     rebound: Rebound,
     free_loads: FreeLoads,
 }
@@ -271,6 +273,7 @@ impl BlockDiagnostics {
             let drive = drive_of(block);
             balance.ringing.add(step, drive);
             balance.hops.add(step.dt_s, drive);
+            balance.squeeze.add(drive);
             balance.free_loads.add(step, drive);
             balance.rebound.add(step.dt_s, drive, scales[block].deforms);
         });

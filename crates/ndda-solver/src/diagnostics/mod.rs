@@ -13,4 +13,5 @@ pub(crate) mod ledger;
 pub(crate) mod many;
 pub(crate) mod rebound;
 pub(crate) mod ringing;
+pub(crate) mod squeeze;
 pub(crate) mod worst;

@@ -8,7 +8,7 @@ mod vibration;
 use rotation::{kept_from_turning, lumped_rotation, turns};
 use vibration::{
     SETTLE, arriving_waves, chatter, contact_damping, creep, energy_from_damping, hops, rebound, ringing,
-    within_a_step,
+    squeezes, within_a_step,
 };
 
 use crate::summary::{Judgement, Label, LabelWord, Named, Verdict};
@@ -90,6 +90,7 @@ fn entries(simulation: &Simulation) -> Vec<Entry> {
     entries.extend(creep(simulation));
     entries.push(hops(simulation));
     entries.extend(chatter(simulation));
+    entries.extend(squeezes(simulation));
     entries.extend(rebound(simulation));
     entries.extend(contact(simulation));
     entries.extend(lateral_drift(simulation));

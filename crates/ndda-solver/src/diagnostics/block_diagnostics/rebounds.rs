@@ -37,6 +37,20 @@ impl BlockDiagnostics {
         worst
     }
 
+    /// Most times that a block which deforms nearly lost and regained the contact that presses it from opposite sides, friction acting; what rounding may have
+    /// done does not count, nor what is slow beside the largest speed.
+    pub(crate) fn squeezes(&self, largest_m_s: f64, rounding_j: f64) -> Worst {
+        let mut worst = Worst::default();
+        for (block, (balance, scale)) in self.balances.iter().zip(&self.scales).enumerate() {
+            let (times, speed_m_s) = balance.squeeze.regained();
+            let counts = scale.deforms && speed_m_s > FAST * largest_m_s;
+            if counts && 0.5 * scale.mass_kg * speed_m_s * speed_m_s > rounding_j {
+                worst.take(f64::from(times), block);
+            }
+        }
+        worst
+    }
+
     /// Largest of the second largest impacts of all blocks, over a speed; what rounding may have done does not count.
     pub(crate) fn second_impact(&self, speed_m_s: f64, rounding_j: f64) -> Worst {
         self.worst_speed(|_| speed_m_s, rounding_j, |balance| balance.hops.second_impact_m_s())

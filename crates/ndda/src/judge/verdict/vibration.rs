@@ -1,7 +1,10 @@
 //! Verdicts on blocks that vibrate on their contacts and supports, or in themselves.
 
+use ndda_mesh::BlockId;
+use ndda_mesh::geometry::Aabb;
 use ndda_solver::{BodyKind, Simulation, Worst};
 
+use crate::numbers::two_figures_down;
 use crate::waves;
 
 use super::{Entry, PLACE, SPEED, name, warned};
@@ -13,6 +16,10 @@ const MOST_VIBRATION: f64 = 12.0 * SPEED;
 const MOST_GIVEN: f64 = SPEED * SPEED;
 /// Hops in a row that may each be longer than the one before. One more makes nine flights in growing order: by chance one in 362 880.
 const MOST_GROWING: f64 = 7.0;
+/// Times that a block between others nearly lost and regained contact: a key block that falls as statics says has none, one that hangs 36 to 256.
+const MOST_SQUEEZES: f64 = 15.0;
+/// Damping in proportion to stiffness that ends such vibrations, over the time that a wave takes through the block: a tenth of critical.
+const DAMPED: f64 = 0.06;
 /// Short hops of a sliding block: runs that agree with closed forms have up to 11, runs that do not have 21 and more.
 const MOST_CHATTERING: f64 = 15.0;
 
@@ -26,10 +33,18 @@ pub(super) const SETTLE: &str = "`settle: ()` (in place of gravity_ramp_s)";
 pub(super) fn creep(simulation: &Simulation) -> [Entry; 2] {
     let worst = simulation.invariants();
     let (place, speed) = (worst.creep_place, worst.creep_speed);
-    let cure = format!(
-        "because vibrating contact makes its shear springs slip: {}, or remove shear_penalty_pa_m",
-        against_creep(simulation.damps_contact(), simulation.began_at_rest())
-    );
+    let squeezes = worst.squeezes;
+    let cure = if squeezes.value > MOST_SQUEEZES {
+        format!(
+            "because it vibrates between others, which makes its shear springs slip: {}",
+            damp_rock(simulation, squeezes)
+        )
+    } else {
+        format!(
+            "because vibrating contact makes its shear springs slip: {}, or remove shear_penalty_pa_m",
+            against_creep(simulation.damps_contact(), simulation.began_at_rest())
+        )
+    };
     let where_it_is = format!(
         "block `{}` crept by {:.2} of its smallest element size, limit {PLACE}, {cure}",
         name(simulation, place),
@@ -84,6 +99,30 @@ pub(super) fn chatter(simulation: &Simulation) -> Option<Entry> {
     );
     let check = "contact lost and regained while sliding";
     (worst.value > 0.0).then(|| warned(check, worst.value, MOST_CHATTERING, reason))
+}
+
+/// Whether blocks that deform vibrate between others while friction acts on them; shown only beyond the limit.
+pub(super) fn squeezes(simulation: &Simulation) -> Option<Entry> {
+    let worst = simulation.invariants().squeezes;
+    let reason = format!(
+        "block `{}` vibrates between others: it nearly lost the contact that presses it from opposite sides and regained it {} times while friction acted, limit \
+         {MOST_SQUEEZES}, and may hang or slide too slowly; {}",
+        name(simulation, worst),
+        worst.value,
+        damp_rock(simulation, worst)
+    );
+    let check = "contact between others lost and regained";
+    (worst.value > MOST_SQUEEZES).then(|| warned(check, worst.value, MOST_SQUEEZES, reason))
+}
+
+/// The cure of vibrations of a block between others: damping by its material, as much for each size.
+fn damp_rock(simulation: &Simulation, found: Worst) -> String {
+    let (block, blocks) = (BlockId(found.block), simulation.blocks());
+    let material = simulation.shape(block).material.as_ref();
+    let wave_m_s = (material.moduli()[(2, 2)] / material.density_kg_m3()).sqrt();
+    let bounds = Aabb::around(&blocks.rest_position[blocks.nodes_of(block)]);
+    let across_s = (bounds.max - bounds.min).max() / wave_m_s;
+    format!("give its material `damping: (stiffness_s: {})`, or more", two_figures_down(DAMPED * across_s))
 }
 
 /// Whether rebounds of contact made a block slide faster; shown only beyond the limit, and not where friction has shear springs, which hold less at first, and are meant to.
