@@ -130,17 +130,27 @@ def test_numbers_of_a_law_that_cannot_be_are_refused(name: str, value: object, w
         ndda.Simulation(ndda.load(RAMP), law=law)
 
 
-def test_a_simulation_with_a_law_goes_on_only_with_one(tmp_path: pathlib.Path) -> None:
+def glide(facets: Facets) -> np.ndarray:
+    """No friction."""
+    return np.zeros((len(facets), 3))
+
+
+def test_a_simulation_with_a_law_goes_on_only_with_that_law(tmp_path: pathlib.Path) -> None:
     scene = ndda.load(RAMP, **{"time.end_s": 0.01, "reference": None})
     simulation = ndda.Simulation(scene, law=Spring(35.0, 2e8))
     simulation.step(10)
     simulation.save(tmp_path / "state")
-    words = "the friction law `Spring`, which is not in the file: resume with it, in Python `ndda.resume"
+    words = "the friction law `Spring`, which is not in the file, and is resumed with no law of its own: resume with it, in Python `ndda.resume"
     with pytest.raises(ValueError, match=words):
         ndda.resume(tmp_path / "state")
+    with pytest.raises(ValueError, match="`Spring`, which is not in the file, and is resumed with the friction law `glide`: resume"):
+        ndda.resume(tmp_path / "state", law=glide)
     later = ndda.resume(tmp_path / "state", law=Spring(35.0, 2e8))
     assert not later.is_reproducible and later.state_crc32 == simulation.state_crc32
     plain = ndda.Simulation(scene)
-    with pytest.raises(ValueError, match="a simulation with the friction law `Spring`, and this one was begun without it"):
+    with pytest.raises(ValueError, match="a simulation with the friction law `Spring`, and this one has no law of its own"):
         plain.restore(simulation.snapshot())
+    gliding = ndda.Simulation(scene, law=glide)
+    with pytest.raises(ValueError, match="with the friction law `Spring`, and this one has the friction law `glide`"):
+        gliding.restore(simulation.snapshot())
     assert plain.step_count == 0 and plain.is_reproducible

@@ -279,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn a_simulation_with_a_law_of_its_own_goes_on_only_with_one() {
+    fn a_simulation_with_a_law_of_its_own_goes_on_only_with_that_law() {
         use crate::build::Choices;
         let slippery = || {
             let law = ndda_contact::Coulomb::new(5.0, 1e10);
@@ -297,7 +297,7 @@ mod tests {
         let file = folder.path().join("state");
         driver.save(&file).unwrap();
         let refused = plain.restore(&driver.snapshot());
-        assert!(matches!(refused, Err(DriverRestoreError::Own(_))), "{refused:?}");
+        assert!(matches!(refused, Err(DriverRestoreError::Own { .. })), "{refused:?}");
         assert_eq!(plain.simulation().state().step, 0);
         assert!(matches!(Driver::load(&file, None), Err(LoadError::Own { .. })));
         Driver::load(&file, Some(parts.clone())).unwrap().restore(&driver.snapshot()).unwrap();

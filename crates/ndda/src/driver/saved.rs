@@ -9,6 +9,7 @@ use ndda_io::{WriteError, read};
 use ndda_solver::{RestoreError, Snapshot, StepError};
 use serde::{Deserialize, Serialize};
 
+use super::snapshot::other_parts;
 use super::{Disturbed, Driver, Parts, choices};
 use crate::Model;
 use crate::run::{Identity, ResumeError, Run};
@@ -50,13 +51,15 @@ pub enum LoadError {
     NotSaved(String),
     /// It was saved with parts that are not in the file.
     #[error(
-        "{file} was saved with {own}, which is not in the file: resume with it, in Python `ndda.resume(file, law=…)`"
+        "{file} was saved with {own}, which is not in the file, and is resumed with {here}: resume with it, in Python `ndda.resume(file, law=…)`"
     )]
     Own {
         /// The file.
         file: String,
         /// The parts.
         own: String,
+        /// Those that it is resumed with.
+        here: String,
     },
     /// Files that the scene names have changed.
     #[error(transparent)]
@@ -114,8 +117,9 @@ impl Driver {
             if saved.kind != KIND {
                 return Err(not_saved());
             }
-            if let (Some(own), None) = (saved.own, &parts) {
-                return Err(LoadError::Own { file: path.display().to_string(), own });
+            let present = choices(parts.as_ref()).own();
+            if let Some((own, here)) = other_parts(saved.own.as_deref(), present.as_deref()) {
+                return Err(LoadError::Own { file: path.display().to_string(), own, here });
             }
             (saved.origin, saved.identity, saved.snapshot, saved.disturbed)
         };

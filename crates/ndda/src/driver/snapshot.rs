@@ -30,15 +30,26 @@ pub enum DriverRestoreError {
     OtherScene,
     /// It is of a simulation with other parts than the scene's.
     #[error(
-        "the snapshot is of a simulation with {0}, and this one was begun without it: restore it in a simulation that has it"
+        "the snapshot is of a simulation with {own}, and this one has {here}: restore it in a simulation that has it"
     )]
-    Own(String),
+    Own {
+        /// The parts of its simulation.
+        own: String,
+        /// Those of this one.
+        here: String,
+    },
     /// Meshes that the scene names have changed.
     #[error(transparent)]
     OtherProblem(#[from] RestoreError),
     /// The scene as it was cannot be built any more.
     #[error(transparent)]
     Scene(#[from] SceneErrors),
+}
+
+/// The parts of a saved state and those of a simulation, in words, where the state cannot go on there: it has parts of its own, and not those.
+pub(super) fn other_parts(saved: Option<&str>, present: Option<&str>) -> Option<(String, String)> {
+    let own = saved.filter(|own| present != Some(own))?;
+    Some((own.into(), present.unwrap_or("no law of its own").into()))
 }
 
 impl Driver {
@@ -58,8 +69,8 @@ impl Driver {
         if snapshot.origin != self.origin {
             return Err(DriverRestoreError::OtherScene);
         }
-        if let (Some(own), None) = (&snapshot.own, &self.own) {
-            return Err(DriverRestoreError::Own(own.clone()));
+        if let Some((own, here)) = other_parts(snapshot.own.as_deref(), self.own.as_deref()) {
+            return Err(DriverRestoreError::Own { own, here });
         }
         if snapshot.scene == self.model.loaded.text {
             self.model.simulation.restore(snapshot.snapshot.clone())?;

@@ -118,3 +118,36 @@ fn the_borders_of_triangles_of_a_plane_do_not_matter() {
     let gone = (ends[0] - start.center).norm();
     assert!((ends[1] - ends[0]).norm() < 1e-3 * gone, "{} m of {gone} m", (ends[1] - ends[0]).norm());
 }
+
+#[test]
+fn a_boulder_beside_a_gap_in_the_heights_moves_as_without_the_ground_beyond_it() {
+    // A plane of 0°, on which a cube stays; the column from x = 22 to 23 m has no heights, and the ground goes on beyond it.
+    let folder = tempfile::tempdir().unwrap();
+    let row = |gap: bool, beyond: &str| -> String {
+        (0..=40)
+            .map(|i| {
+                if gap && i == 22 {
+                    "-9999 "
+                } else if i > 22 {
+                    beyond
+                } else {
+                    "0 "
+                }
+            })
+            .collect()
+    };
+    let ends = [(false, "0 "), (true, "0 "), (true, "-9999 ")].map(|(gap, beyond)| {
+        let head = "ncols 41\nnrows 41\nxllcenter 0\nyllcenter 0\ncellsize 1\nNODATA_value -9999\n";
+        std::fs::write(
+            folder.path().join("t.asc"),
+            format!("{head}{}", (row(gap, beyond) + "\n").repeat(41)),
+        )
+        .unwrap();
+        let ground = Ground::File { file: "t.asc".into(), origin_m: [0.0; 2], sample_m: None };
+        let terrain = Terrain::new(&ground, folder.path(), (&[], None)).expect("a grid");
+        let (boulder, start) = cube(0.0, 19.0, 0.01, [3.0, 0.0]);
+        moved(&terrain, &boulder, start, &laws(0.1, 30.0), 0.3).0.center
+    });
+    assert_eq!(ends[1], ends[2]);
+    assert!((ends[0] - ends[1]).norm() < 1e-9, "{ends:?}");
+}

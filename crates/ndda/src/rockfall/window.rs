@@ -120,20 +120,50 @@ impl Cells {
         1.0 / steepest.hypot(1.0)
     }
 
+    fn contain(self, (i, j): (usize, usize)) -> bool {
+        (self.from[0]..self.to[0]).contains(&i) && (self.from[1]..self.to[1]).contains(&j)
+    }
+
     fn each(self) -> impl Iterator<Item = (usize, usize)> {
         (self.from[1]..self.to[1]).flat_map(move |j| (self.from[0]..self.to[0]).map(move |i| (i, j)))
     }
 }
 
-/// The ground of some cells: a tetrahedron from each triangle to one point that is below all of them.
-fn ground(terrain: &Terrain, cells: Cells, grounds: usize) -> BlockMesh {
+/// The cells with heights that others with heights connect, edge by edge, with the one below a boulder, which leaves the terrain before it gets to any beyond a gap.
+fn in_reach(terrain: &Terrain, cells: Cells, center: &Vec3) -> Vec<(usize, usize)> {
+    let all: Vec<(usize, usize)> = cells.each().filter(|&(i, j)| terrain.has(i, j)).collect();
+    let width = cells.to[0] - cells.from[0];
+    let has_gaps = all.len() < width * (cells.to[1] - cells.from[1]);
+    let Some((below, _)) = terrain.cell_at([center.x, center.y]).filter(|_| has_gaps) else { return all };
+    let place = |(i, j): (usize, usize)| (j - cells.from[1]) * width + i - cells.from[0];
+    let (mut open, mut is_reached) = (all.clone(), vec![false; width * (cells.to[1] - cells.from[1])]);
+    is_reached[place(below.into())] = true;
+    // As a rule one pass along the rows and one back find nearly all.
+    loop {
+        let found = open.len();
+        open.retain(|&(i, j)| {
+            let sides = [(i.wrapping_sub(1), j), (i + 1, j), (i, j.wrapping_sub(1)), (i, j + 1)];
+            let joins = sides.into_iter().any(|side| cells.contain(side) && is_reached[place(side)]);
+            is_reached[place((i, j))] |= joins;
+            !joins
+        });
+        open.reverse();
+        if open.len() == found {
+            break;
+        }
+    }
+    all.into_iter().filter(|&cell| is_reached[place(cell)]).collect()
+}
+
+/// The ground of some cells below a boulder: a tetrahedron from each triangle to one point that is below all of them.
+fn ground((terrain, cells): (&Terrain, Cells), center: &Vec3, grounds: usize) -> BlockMesh {
     let columns = cells.to[0] - cells.from[0] + 1;
     let mut number: Vec<u32> = vec![u32::MAX; columns * (cells.to[1] - cells.from[1] + 1)];
     let (mut nodes, mut triangles) = (vec![Vec3::zeros()], Vec::new());
     // All of them, so that each has the same number in every window.
     let mut surfaces: BTreeMap<String, Vec<[u32; 3]>> =
         (0..grounds).map(|zone| (surface_name(zone), Vec::new())).collect();
-    for (i, j) in cells.each().filter(|&(i, j)| terrain.has(i, j)) {
+    for (i, j) in in_reach(terrain, cells, center) {
         let corners = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)].map(|(i, j)| {
             let place = (j - cells.from[1]) * columns + i - cells.from[0];
             if number[place] == u32::MAX {
@@ -196,7 +226,7 @@ pub(super) fn simulation(
     let center = motion.center - origin_m;
     let nodes = motion.arms.iter().map(|arm| center + arm).collect();
     let boulder = BlockMesh { nodes, tets: tets.to_vec(), ..BlockMesh::default() };
-    let mut ground = ground(terrain, cells, laws.friction_deg.len());
+    let mut ground = ground((terrain, cells), &motion.center, laws.friction_deg.len());
     ground.nodes.iter_mut().for_each(|x| *x -= origin_m);
     let mut blocks = BlockSet::new(vec![("boulder".to_string(), boulder), ("ground".to_string(), ground)])
         .map_err(|error| error.to_string())?;
