@@ -80,6 +80,24 @@ fn what_does_not_fit_is_refused_with_its_figures_and_nothing_is_built() {
 }
 
 #[test]
+fn a_terrain_is_counted_by_its_heights_however_long_the_file_of_a_surface_is() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let terrain = |file: &str| {
+        std::fs::File::create(folder.path().join(file))
+            .and_then(|made| made.set_len(800_000))
+            .expect("a file");
+        let rock = format!("rock: [(name: \"t\", material: \"r\", domain: TerrainFile(file: \"{file}\", base_m: 0))]");
+        let output = ndda(folder.path(), &scene(&rock), &["check", "--memory", "50MB"]);
+        assert_eq!(output.status.code(), Some(RESOURCE));
+        String::from_utf8_lossy(&output.stderr).into_owned()
+    };
+    let (surface, grid) = (terrain("t.stl"), terrain("t.asc"));
+    assert!(surface.contains("rock[0].domain: about 1 block and 6.4e5 tetrahedra"), "{surface}");
+    assert!(surface.contains("use a coarser grid or surface"), "{surface}");
+    assert!(grid.contains("rock[0].domain: about 1 block and 1.6e6 tetrahedra"), "{grid}");
+}
+
+#[test]
 fn a_mesh_file_that_does_not_fit_is_refused_before_it_is_read() {
     let folder = tempfile::tempdir().expect("a folder");
     // The length of the file decides; what it holds is not looked at.

@@ -42,6 +42,10 @@ const PACKED_TET_B: f64 = 10.0;
 const FILE_TRIANGLE_B: f64 = 30.0;
 /// Bytes of a height in a grid, of which there are two triangles.
 const HEIGHT_B: f64 = 8.0;
+/// Most triangles of a terrain that is sampled from a surface: two for each of 200 heights by 200.
+const SAMPLED_TRIANGLES: f64 = 8e4;
+/// Of a convex part of a domain, which is glued to the others: the prism below a triangle of a terrain.
+const PART: Count = Count { blocks: 0.0, nodes: 2.0, tets: 8.0, triangles: 4.0, build_s: 8.0 * TET_S };
 /// Seconds per tetrahedron, and per Voronoi cell.
 const TET_S: f64 = 1e-5;
 const CELL_S: f64 = 3e-3;
@@ -198,19 +202,33 @@ fn of_cut_rock(rock: &Rock, folder: &Path) -> (Count, &'static str, &'static str
         let bare = Count { nodes: 27.0, tets: 35.0, triangles: 50.0, ..Count::default() };
         // A cell of volume v has a surface of 5.82 v^(2/3) (Meijering 1953).
         area_m2 += 5.82 * cells * (volume_m3 / cells).powf(2.0 / 3.0);
-        let mut count = filled(times(bare, cells.max(parts)), fill, volume_m3, area_m2);
+        let mut count = with_parts(filled(times(bare, cells), fill, volume_m3, area_m2), parts);
         count.build_s += CELL_S * cells;
         return (count, ".voronoi", "use a smaller count");
     }
     let sets = sets(rock);
-    let blocks = cells_of(&sets, &extent).max(parts);
+    let blocks = cells_of(&sets, &extent);
     area_m2 += sets.iter().map(|(_, per_m)| 2.0 * volume_m3 * per_m).sum::<f64>();
     let bare = Count { nodes: 8.0, tets: 6.0, triangles: 12.0, ..Count::default() };
-    (
-        filled(times(bare, blocks), fill, volume_m3, area_m2),
-        ".joints",
-        "use wider spacings, or a coarser fill",
-    )
+    let count = with_parts(filled(times(bare, blocks), fill, volume_m3, area_m2), parts);
+    if parts > blocks {
+        return (count, ".domain", "use a coarser grid or surface");
+    }
+    (count, ".joints", "use wider spacings, or a coarser fill")
+}
+
+/// Blocks of a domain that falls into convex parts, which are glued together where no joint parts them.
+fn with_parts(count: Count, parts: f64) -> Count {
+    if parts <= 1.0 {
+        return count;
+    }
+    Count {
+        nodes: count.nodes + parts * PART.nodes,
+        tets: count.tets + parts * PART.tets,
+        triangles: count.triangles + parts * PART.triangles,
+        build_s: count.build_s + parts * PART.build_s,
+        ..count
+    }
 }
 
 pub(super) fn times(one: Count, blocks: f64) -> Count {
@@ -241,7 +259,12 @@ fn of_domain(domain: &Domain, folder: &Path) -> (Vec3, f64) {
             let extent = Vec3::new(along(columns, step_m[0]), along(rows, step_m[1]), highest - base_m);
             (extent, 2.0 * along(columns, 1.0) * along(rows, 1.0))
         }
-        Domain::TerrainFile { file, .. } => (Vec3::zeros(), 1.0 + 2.0 * file_b(folder, file) / HEIGHT_B),
+        Domain::TerrainFile { file, .. } => {
+            let is_surface =
+                Path::new(file).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("stl"));
+            let triangles = 2.0 * file_b(folder, file) / HEIGHT_B;
+            (Vec3::zeros(), 1.0 + if is_surface { SAMPLED_TRIANGLES } else { triangles })
+        }
     }
 }
 
