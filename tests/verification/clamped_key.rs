@@ -41,3 +41,26 @@ fn a_key_block_of_damped_rock_falls_and_is_accurate() {
     let (slowest_m_s, fastest_m_s) = (falls_at_m_s(2.0 * FRICTION * PRESSED_N / WEIGHT_N), falls_at_m_s(0.0));
     assert!(slowest_m_s < speed_m_s && speed_m_s < fastest_m_s, "{speed_m_s}");
 }
+
+#[test]
+fn a_rigid_key_block_that_vibrates_between_elastic_walls_is_found_too() {
+    let walls = ["left", "right"].map(|wall| {
+        let shape = format!("blocks.{wall}.shape=Box(size_m:(1,1,1),cells:(2,2,2))");
+        [
+            format!("blocks.{wall}.body=Elastic"),
+            shape,
+            format!("blocks.{wall}.initial_stress_pa=(xx:-10.6e3)"),
+        ]
+    });
+    let backs = "supports=[
+        (block:\"left\",on:Plane(point_m:(-1,0,0),normal:(1,0,0)),hold:Fixed),
+        (block:\"right\",on:Plane(point_m:(2,0,0),normal:(1,0,0)),hold:Fixed)]";
+    let key = ["blocks.key.body=Rigid", "blocks.key.initial_stress_pa=None", backs];
+    let settings: Vec<&str> = walls.iter().flatten().map(String::as_str).chain(key).collect();
+    let label = run(&settings).label;
+    assert_eq!(label.word, LabelWord::Inaccurate);
+    let says = |reason: &String| {
+        reason.contains("`key` vibrates between others") && reason.contains("the blocks that press it")
+    };
+    assert!(label.reasons.iter().any(says), "{:?}", label.reasons);
+}

@@ -86,7 +86,9 @@ fn a_terrain_is_counted_by_its_heights_however_long_the_file_of_a_surface_is() {
         std::fs::File::create(folder.path().join(file))
             .and_then(|made| made.set_len(800_000))
             .expect("a file");
-        let rock = format!("rock: [(name: \"t\", material: \"r\", domain: TerrainFile(file: \"{file}\", base_m: 0))]");
+        let rock = format!(
+            "rock: [(name: \"t\", material: \"r\", domain: TerrainFile(file: \"{file}\", base_m: 0))]"
+        );
         let output = ndda(folder.path(), &scene(&rock), &["check", "--memory", "50MB"]);
         assert_eq!(output.status.code(), Some(RESOURCE));
         String::from_utf8_lossy(&output.stderr).into_owned()

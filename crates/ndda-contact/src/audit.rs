@@ -53,6 +53,10 @@ pub trait ContactAudit {
     /// the second, one call for each facet that has a spring, always in the same order.
     fn each_spring_slip(&self, _add: &mut dyn FnMut(BlockId, BlockId, &SpringSlip)) {}
 
+    /// Normal forces of the last [`add_forces`](crate::ContactModel::add_forces) on facets of the first block, which the second one presses [N], one call for each facet,
+    /// always in the same order. A model that does not say is not asked whether blocks vibrate between others.
+    fn each_push(&self, _add: &mut dyn FnMut(BlockId, BlockId, &Vec3)) {}
+
     /// Energies of normal contact as [`energy_j`](crate::ContactModel::energy_j) found them in the call before: two blocks and their
     /// energy [J], at most one call for each pair.
     fn each_energy(&self, _add: &mut dyn FnMut(BlockId, BlockId, f64)) {}

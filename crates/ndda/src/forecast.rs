@@ -5,6 +5,7 @@ pub mod cost;
 pub mod creep;
 pub mod doubts;
 pub mod dry;
+pub mod gaps;
 mod ground_stress;
 pub mod held;
 mod idle;

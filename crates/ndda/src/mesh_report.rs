@@ -12,7 +12,7 @@ use serde::Serialize;
 
 use crate::build::RockReport;
 use crate::forecast::step::{self, AdvisedStep};
-use crate::forecast::{held, slivers};
+use crate::forecast::{gaps, held, slivers};
 use crate::numbers::{counted, four_figures};
 
 /// Most bars of the histogram of volumes.
@@ -104,6 +104,7 @@ impl MeshReport {
         self.steps = step::advise_materials(scene, blocks);
         self.warnings = held::sentences(scene, blocks);
         self.warnings.extend(slivers::sentences(&self.rock));
+        self.warnings.extend(gaps::sentences(&self.rock));
     }
 
     /// The report as JSON.

@@ -9,7 +9,7 @@ use ndda_solver::Simulation;
 
 use crate::build::{self, Choices, Fault, RockReport, overlaps};
 use crate::choose;
-use crate::forecast::{admit, creep, dry, held, lumped, rounding, slivers};
+use crate::forecast::{admit, creep, dry, gaps, held, lumped, rounding, slivers};
 use crate::judge::reference::Comparison;
 use crate::run::monitor::Monitor;
 
@@ -104,6 +104,7 @@ impl Model {
         loaded.warnings.extend(held::warnings(&loaded, simulation.blocks()));
         loaded.warnings.extend(dry::warnings(&loaded, &simulation));
         loaded.warnings.extend(slivers::warnings(&loaded, &rock));
+        loaded.warnings.extend(gaps::warnings(&loaded, &rock));
         loaded.warnings.extend(lumped::warning(&loaded, &simulation));
         loaded.warnings.extend(creep::warning(&loaded));
         Ok(Self { loaded, simulation, monitors, rock, folder: folder.to_path_buf() })

@@ -91,6 +91,9 @@ pub struct Summary {
     pub reference: Option<ReferenceError>,
     /// Warnings to read before using the result.
     pub warnings: Vec<String>,
+    /// The one of these that says how far settling has moved a block, if any.
+    #[serde(skip)]
+    pub settled: Option<String>,
 }
 
 /// How a run ended.
@@ -282,6 +285,7 @@ mod tests {
                 stick_stage_max: Some(3e-7),
             }),
             warnings: Vec::new(),
+            settled: None,
         }
     }
 

@@ -38,6 +38,12 @@ impl ContactAudit for PotentialContact {
         }
     }
 
+    fn each_push(&self, add: &mut dyn FnMut(BlockId, BlockId, &Vec3)) {
+        for (touch, force) in self.integrals.touching().iter().zip(&self.forces).filter(|(_, f)| f.touches) {
+            add(touch.owner, touch.target, &(self.integrals.sums_of(touch).pressure * force.push));
+        }
+    }
+
     fn damps(&self) -> bool {
         self.damping.is_some()
     }

@@ -273,6 +273,10 @@ impl ContactAudit for BatchFriction {
         self.normal.each_work(blocks, moved, add);
     }
 
+    fn each_push(&self, add: &mut dyn FnMut(BlockId, BlockId, &Vec3)) {
+        self.normal.each_push(add);
+    }
+
     fn damps(&self) -> bool {
         self.normal.damps()
     }

@@ -5,6 +5,7 @@
 //! south-western cell, `xllcenter` and `yllcenter` its centre; heights belong to the centres of cells.
 
 mod geotiff;
+mod holes;
 mod points;
 mod sampled;
 
@@ -14,6 +15,7 @@ use super::error::{Fault, FileProblem, MeshFileError, ending};
 use super::lines::{Line, Lines, parse, real};
 use super::surface_file;
 use crate::limited;
+pub use holes::Holes;
 
 /// Most heights of a grid: more would need gigabytes once they are rock.
 const MOST_HEIGHTS: u64 = 1 << 24;

@@ -5,7 +5,6 @@ use ndda_mesh::{Mat3, Vec3};
 use crate::bodies::context::StepContext;
 use crate::bodies::prototype::Prototype;
 use crate::bodies::report::{BlockReport, LateralDrift, RigidForcing};
-use crate::diagnostics::lateral_drift::ClampingForces;
 use crate::error::BlockError;
 
 impl BlockReport {
@@ -57,13 +56,8 @@ impl BlockReport {
         }
         self.contact_rate2 = self.contact_rate2.max(shape.contact_rate2(context.contact_stiffness));
         self.drive = RigidForcing::of(shape, context, rotation, self);
-        let touches = self.contact_rate2 > 0.0;
-        if touches && (context.direction_uncertainty > 0.0 || !context.friction_force.is_empty()) {
-            let pressed = ClampingForces::by(context);
-            self.drive.squeeze_m_s2 = pressed.squeeze_n() / shape.operator.mass_kg;
-            if context.direction_uncertainty > 0.0 {
-                self.lateral_drift = LateralDrift::of(shape, context, self, &pressed);
-            }
+        if self.contact_rate2 > 0.0 && context.direction_uncertainty > 0.0 {
+            self.lateral_drift = LateralDrift::of(shape, context, self);
         }
     }
 }

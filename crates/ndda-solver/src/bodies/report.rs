@@ -47,7 +47,7 @@ pub(crate) struct BlockReport {
 
 impl BlockReport {
     /// Everything in it, in one order.
-    fn parts(&mut self) -> ([&mut Vec3; 19], [&mut f64; 12], [&mut bool; 5]) {
+    fn parts(&mut self) -> ([&mut Vec3; 19], [&mut f64; 11], [&mut bool; 5]) {
         let Self {
             reaction,
             outside_torque,
@@ -74,7 +74,6 @@ impl BlockReport {
             shift_m_s2,
             damped_m_s,
             pressed_m_s2,
-            squeeze_m_s2,
             turn_m_s2,
             is_held,
             is_clamped,
@@ -101,7 +100,6 @@ impl BlockReport {
             speed_m_s,
             contact_rate2,
             pressed_m_s2,
-            squeeze_m_s2,
             fastest_m_s,
             drive_rate2,
         ];
@@ -146,8 +144,6 @@ pub(crate) struct RigidForcing {
     /// Half the sum of the sizes of contact forces on its nodes, over its mass: what presses it from both sides [m/s²]. Zero for a
     /// block that does not deform, and where contact is taken in the middle of a step.
     pub pressed_m_s2: f64,
-    /// What contact presses it by from opposite sides while friction acts, over its mass [m/s²].
-    pub squeeze_m_s2: f64,
     /// Angular acceleration about its mass centre, times its radius; zero for a held block [m/s²].
     pub turn_m_s2: Vec3,
     /// Whether contact or supports act on it.

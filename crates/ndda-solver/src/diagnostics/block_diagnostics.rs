@@ -23,7 +23,7 @@ use crate::diagnostics::kept_turn::KeptTurn;
 use crate::diagnostics::many::each_of_many;
 use crate::diagnostics::rebound::Rebound;
 use crate::diagnostics::ringing::{Quadrature, Ringing};
-use crate::diagnostics::squeeze::Squeeze;
+use crate::diagnostics::squeeze::{Fastest, Squeeze};
 
 /// Vibrations of this part of the strain of a block that supports hold leave it at rest.
 const AT_REST: f64 = 0.01;
@@ -265,7 +265,7 @@ impl BlockDiagnostics {
     /// Records the forcing of each block in a step, and with it the error that the step leaves.
     pub(crate) fn add_ringing<'a>(
         &mut self,
-        step: &Quadrature,
+        (step, fastest): (&Quadrature, &Fastest),
         drive_of: impl Fn(usize) -> &'a RigidForcing + Sync,
     ) {
         let Self { scales, balances, .. } = self;
@@ -273,7 +273,7 @@ impl BlockDiagnostics {
             let drive = drive_of(block);
             balance.ringing.add(step, drive);
             balance.hops.add(step.dt_s, drive);
-            balance.squeeze.add(drive);
+            balance.squeeze.close_step(step.dt_s, (scales[block].mass_kg, drive), fastest);
             balance.free_loads.add(step, drive);
             balance.rebound.add(step.dt_s, drive, scales[block].deforms);
         });

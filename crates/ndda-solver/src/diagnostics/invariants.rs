@@ -57,7 +57,7 @@ pub struct Invariants {
     pub chattering_hops: Worst,
     /// Hops of a block with friction between them that could stop it: small differences grow from hop to hop.
     pub hops_with_friction: Worst,
-    /// How often a block that deforms nearly lost and regained the contact that presses it from opposite sides, friction acting: its friction may be that of its
+    /// How often a block nearly lost and regained the contact that presses it from opposite sides, friction acting: its friction may be that of its
     /// vibrations.
     pub squeezes: Worst,
     /// Second largest impact of a block: velocity that contact added, less that which bears its loads, over the largest speed.

@@ -13,7 +13,7 @@ use crate::bodies::report::BlockReport;
 
 /// Normal contact forces on a block.
 #[derive(Default)]
-pub(crate) struct ClampingForces {
+struct ClampingForces {
     resultant: Vec3,
     sum_n: f64,
     friction_n: f64,
@@ -22,12 +22,8 @@ pub(crate) struct ClampingForces {
 
 impl LateralDrift {
     /// Drift of a block in a step.
-    pub(crate) fn of(
-        shape: &Prototype,
-        context: &StepContext,
-        report: &BlockReport,
-        pressed: &ClampingForces,
-    ) -> Self {
+    pub(crate) fn of(shape: &Prototype, context: &StepContext, report: &BlockReport) -> Self {
+        let pressed = ClampingForces::by(context);
         let unknown_n = context.direction_uncertainty * pressed.sum_n;
         // Where friction is at work, a little more or less of it carries that.
         if pressed.friction_n > unknown_n {
@@ -45,8 +41,7 @@ impl LateralDrift {
 }
 
 impl ClampingForces {
-    /// Those of a step.
-    pub(crate) fn by(context: &StepContext) -> Self {
+    fn by(context: &StepContext) -> Self {
         let (mut pressed, mut largest_n) = (Self::default(), 0.0);
         // Most nodes are not in contact.
         for force in
@@ -61,11 +56,6 @@ impl ClampingForces {
         }
         pressed.friction_n = context.friction_force.iter().map(|f| f.norm()).sum();
         pressed
-    }
-
-    /// What presses the block from opposite sides while friction acts: half of what the forces add up to beyond the size of their resultant [N].
-    pub(crate) fn squeeze_n(&self) -> f64 {
-        if self.friction_n > 0.0 { 0.5 * (self.sum_n - self.resultant.norm()) } else { 0.0 }
     }
 
     /// The line along which the block is pressed, which is that of the resultant where no forces oppose each other.

@@ -359,7 +359,7 @@ impl Ledger {
             growing_hops,
             chattering_hops,
             hops_with_friction: self.blocks.hops_with_friction(self.largest_speed_m_s, self.rounding_j),
-            squeezes: self.blocks.squeezes(self.largest_speed_m_s, self.rounding_j),
+            squeezes: self.blocks.squeezes(self.rounding_j),
             second_impact: self.blocks.second_impact(scale_m_s, self.rounding_j),
             impact: self.blocks.impact(scale_m_s, self.rounding_j),
             free_speed,

@@ -9,6 +9,7 @@ use ndda_ranks::ExactSum;
 
 use crate::diagnostics::block_sums::ExactVector;
 use crate::diagnostics::ringing::Quadrature;
+use crate::diagnostics::squeeze::Fastest;
 use crate::step::report::Iterations;
 use crate::step::{Audit, Simulation};
 
@@ -56,9 +57,12 @@ impl Simulation {
             rate2 = rate2.max(report.contact_rate2);
             speed_m_s = speed_m_s.max(report.speed_m_s);
         }
+        self.record_pushes(&contact);
         let quadrature = self.quadrature();
         let bodies = &self.bodies;
-        self.audit.ledger.blocks().add_ringing(&quadrature, |block| &bodies[block].report.drive);
+        let ledger = &mut self.audit.ledger;
+        let fastest = Fastest { now_m_s: speed_m_s, so_far_m_s: ledger.largest_speed_m_s().max(speed_m_s) };
+        ledger.blocks().add_ringing((&quadrature, &fastest), |block| &bodies[block].report.drive);
         let travel = self.travel_of_step(speed_m_s);
         let h = self.part_s * rate2.sqrt();
         let Audit { ledger, step_sums, .. } = &mut self.audit;
@@ -133,6 +137,15 @@ impl Simulation {
         });
         books.close_step();
         contact_work_j.value()
+    }
+
+    /// Records what presses each block, where friction is in proportion to it.
+    fn record_pushes(&mut self, contact: &ContactReport) {
+        let Some(model) = self.contact.as_ref().filter(|model| model.has_friction()) else { return };
+        if contact.contact_pairs > 0 {
+            let books = self.audit.ledger.blocks();
+            model.each_push(&mut |owner, target, push_n| books.add_push(owner, target, push_n));
+        }
     }
 
     /// Records the slip of shear springs in the step.

@@ -44,6 +44,9 @@ pub struct RockReport {
     pub removed: (usize, f64),
     /// Cuts that would have left a needle thinner than rounding, and were not made.
     pub refused: usize,
+    /// What heights its terrain lacks within, in words.
+    #[serde(skip)]
+    pub gaps: Option<String>,
     /// What discs cut; left out where there are none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub discs: Option<Discs>,
@@ -54,7 +57,8 @@ pub struct RockReport {
 
 impl fmt::Display for RockReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { name, blocks, domain_m3, merged, slivers, thin, removed, refused, discs, bonded } = self;
+        let Self { name, blocks, domain_m3, merged, slivers, thin, removed, refused, discs, bonded, .. } =
+            self;
         let kept_m3 = domain_m3 - slivers.1 - removed.1;
         write!(f, "rock {name}: {} of {} m³", counted(*blocks, "block", "blocks"), four_figures(kept_m3))?;
         let counts = [
@@ -123,7 +127,7 @@ pub(super) fn cut_rock(
 ) -> Result<CutRock, Vec<Fault>> {
     let rock = &scene.rock[index];
     let at = |field: &str| format!("rock[{index}]{field}");
-    let domain = domain(&rock.domain, folder).map_err(|m| vec![Fault::new(at(".domain"), m)])?;
+    let (domain, gaps) = domain(&rock.domain, folder).map_err(|m| vec![Fault::new(at(".domain"), m)])?;
     if rock.sliver_width_m.powi(3) >= domain.volume_m3() {
         let message = format!(
             "{} m: a cube of this width is larger than the rock of {:.3e} m³, so that all of it is slivers",
@@ -171,6 +175,7 @@ pub(super) fn cut_rock(
         thin,
         removed: (removed.len(), removed_m3),
         refused,
+        gaps,
         discs: Discs::new(&blocks.report.discs),
         bonded: None,
     };
@@ -291,8 +296,9 @@ pub(super) fn body(rock: &Rock, blocks: &BlockSet, block: BlockId) -> scene::Bod
     if holds(&rock.fixed, &centroid) { scene::Body::Fixed } else { rock.body }
 }
 
-fn domain(domain: &scene::Domain, folder: &Path) -> Result<Domain, String> {
-    match domain {
+/// A domain, and what heights it lacks within, in words.
+fn domain(domain: &scene::Domain, folder: &Path) -> Result<(Domain, Option<String>), String> {
+    let whole = match domain {
         scene::Domain::Box { min_m, max_m } => {
             Domain::cuboid(vec3(*min_m), vec3(*max_m)).map_err(|e| e.to_string())
         }
@@ -313,9 +319,19 @@ fn domain(domain: &scene::Domain, folder: &Path) -> Result<Domain, String> {
         scene::Domain::TerrainFile { file, origin_m, base_m } => {
             let mut grid = TerrainGrid::read(&folder.join(file), None).map_err(|e| e.to_string())?;
             grid.origin_m = [grid.origin_m[0] - origin_m[0], grid.origin_m[1] - origin_m[1]];
-            terrain(&grid, *base_m)
+            return Ok((terrain(&grid, *base_m)?, gaps(&grid)));
         }
-    }
+    };
+    whole.map(|domain| (domain, None))
+}
+
+/// Cells of terrain without heights that others enclose, in words.
+fn gaps(grid: &TerrainGrid) -> Option<String> {
+    let (holes, [x, y]) = grid.holes()?;
+    let cells = counted(holes.count, "cell within the terrain has", "cells within the terrain have");
+    Some(format!(
+        "{cells} no height at some corner, the first at ({x:.1}, {y:.1}) m: the rock has a shaft there, down to its base"
+    ))
 }
 
 /// Two triangles per cell of the grid whose four corners have heights.

@@ -27,7 +27,7 @@ struct Saved<S = Snapshot> {
     own: Option<String>,
 }
 
-const KIND: &str = "ndda.driver/4";
+const KIND: &str = "ndda.driver/5";
 
 /// Why a driver cannot be saved.
 #[derive(Debug, thiserror::Error)]

@@ -3,7 +3,7 @@
 use ndda_io::code::Code;
 use ndda_io::diagnostic::{Diagnostic, Severity};
 use ndda_io::read::LoadedScene;
-use ndda_io::scene::{Block, Hold, Scene};
+use ndda_io::scene::{Block, Body, Hold, Rock, Scene};
 use ndda_mesh::BlockSet;
 
 use super::rim;
@@ -19,6 +19,10 @@ pub const NOTHING_MOVES: &str = "no block can move: every block is fixed";
 /// Its cure.
 const LET_MOVE: &str =
     "give blocks that are to move `body: Rigid`, Affine or Elastic, and hold rock by `fixed: […]`";
+
+/// The cure where rock has blocks that could.
+const HOLDS_ALL: &str =
+    "all of them lie in `fixed`: check its points and normals (in expressions sin and cos take degrees)";
 
 /// Whether some block of a scene can move, or is moved by a support.
 pub fn something_moves(scene: &Scene, blocks: &BlockSet) -> bool {
@@ -65,7 +69,12 @@ fn found(scene: &Scene, blocks: &BlockSet) -> Vec<(String, String, &'static str)
     let mut found = Vec::new();
     let list = if scene.blocks.is_empty() { "rock" } else { "blocks" };
     if !something_moves(scene, blocks) {
-        found.push((list.to_string(), NOTHING_MOVES.to_string(), LET_MOVE));
+        let holds_all = |rock: &Rock| rock.body != Body::Fixed && !rock.fixed.is_empty();
+        let (path, cure) = match scene.rock.iter().position(holds_all) {
+            Some(rock) => (format!("rock[{rock}].fixed"), HOLDS_ALL),
+            None => (list.to_string(), LET_MOVE),
+        };
+        found.push((path, NOTHING_MOVES.to_string(), cure));
     }
     if nothing_is(scene, blocks) {
         found.push((list.to_string(), NOTHING.to_string(), HOLD));

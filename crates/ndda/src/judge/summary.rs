@@ -74,6 +74,9 @@ pub fn summarise(simulation: &Simulation, recorder: &Recorder, ending: Ending) -
     };
     let mut warnings = ending.warnings;
     warnings.extend(advice(simulation, ending.scene));
+    let settles = ending.scene.settle.is_some() && ending.scene.stages.is_empty();
+    let settled = settles.then(|| moved_while_settling(simulation)).flatten();
+    warnings.extend(settled.clone());
     Summary {
         version: env!("CARGO_PKG_VERSION").into(),
         scene: ending.name.into(),
@@ -109,6 +112,7 @@ pub fn summarise(simulation: &Simulation, recorder: &Recorder, ending: Ending) -
         bolts: bolt_ends(simulation),
         reference: reference_error(ending.scene, recorder),
         warnings,
+        settled,
     }
 }
 
@@ -202,9 +206,6 @@ fn advice(simulation: &Simulation, scene: &Scene) -> Vec<String> {
             "numerical error added {:.2} % to the energy: reduce step_s",
             100.0 * worst.energy_gain
         ));
-    }
-    if scene.settle.is_some() && scene.stages.is_empty() {
-        advice.extend(moved_while_settling(simulation));
     }
     advice
 }

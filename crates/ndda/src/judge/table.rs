@@ -35,6 +35,7 @@ pub fn ending(summary: &Summary) -> String {
         return text;
     }
     text.extend(summary.motion.as_ref().map(moved));
+    text.extend(summary.settled.iter().map(|settled| format!("{settled}\n")));
     text.push_str(&bolts(&summary.bolts.0));
     text.push_str(&error(summary));
     let failed =

@@ -18,7 +18,7 @@ const STEEPEST: f64 = 500.0;
 /// Part of the size of the terrain, and of its coordinates, that rounding stays below.
 const ROUNDING: f64 = 1e-9;
 /// No height of ground is as large [m].
-const MOST_HEIGHT_M: f64 = 1e5;
+const MOST_HEIGHT_M: f64 = 1.2e4;
 
 /// Heights on a grid, and the zone of each triangle.
 #[derive(Clone, Debug, PartialEq)]

@@ -44,6 +44,7 @@ impl Run {
             };
             let folder = OutputFolder::open(folder).map_err(|error| given_up(error.into()))?;
             let saved = last_checkpoint(&folder, &mut warnings).map_err(given_up)?;
+            warnings.extend(saved.identity.edited());
             bytes.push(u8::from(is_judged(&folder)));
             bytes.extend(checkpoint::to_bytes(&saved));
             own = Some(folder);

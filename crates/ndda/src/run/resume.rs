@@ -91,6 +91,7 @@ impl Run {
         }
         let mut warnings = Vec::new();
         let saved = (last_checkpoint(&own, &mut warnings)?, is_judged(&own));
+        warnings.extend(saved.0.identity.edited());
         let run = Self::resume_saved(saved, (folder, Some(own)), choices)?;
         Ok(Resumed { run, warnings })
     }

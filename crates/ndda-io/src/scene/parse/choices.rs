@@ -8,6 +8,8 @@ use serde::de::DeserializeOwned;
 use crate::scene::locate::Node;
 use crate::scene::suggest::suggest;
 
+/// The choice of a number without scatter.
+const ALWAYS: &str = "Always";
 /// A name that no choice has, by which a type is asked for those that it has.
 const NO_CHOICE: &str = "NoChoice";
 
@@ -22,6 +24,15 @@ pub(super) fn advice<T: DeserializeOwned>(
         RonError::ExpectedIdentifier => {
             let value = shape.beginning_at(at)?.span.clone();
             choices_at::<T>(options, text, value, NO_CHOICE).map(|choices| suggest("", choices))
+        }
+        RonError::SuggestRawIdentifier(number) if number.parse::<f64>().is_ok() => {
+            let value = shape.leaf_around(at)?.span.clone();
+            let number = text[value.clone()].trim();
+            let choices = choices_at::<T>(options, text, value.clone(), NO_CHOICE)?;
+            let always = choices
+                .contains(&ALWAYS)
+                .then(|| format!("write {ALWAYS}({number}), or another of {}", choices.join(", ")));
+            Some(always.unwrap_or_else(|| suggest("", choices)))
         }
         RonError::MissingStructField { field, .. } => {
             let end = shape.closed_at(at)?.span.end - 1;
@@ -107,6 +118,7 @@ mod tests {
     use crate::scene::locate::Node;
     use crate::scene::parameters::Parameters;
     use crate::scene::parse::parse_with;
+    use crate::scene::rockfall::Scatter;
     use crate::scene::stage::Stage;
     use crate::scene::support::Hold;
 
@@ -121,6 +133,23 @@ mod tests {
         for text in ["(name: \"a\")", "(name: \"a\", )"] {
             let [(Code::MissingField, help)] = &told::<Stage>(text)[..] else { panic!("{text}") };
             assert!(help.starts_with("write then: and one of Settle, Run "), "{help}");
+        }
+    }
+
+    #[test]
+    fn a_number_where_a_choice_stands_is_told_with_the_one_that_takes_it() {
+        let [(Code::WrongType, help)] = &told::<Vec<Scatter>>("[34.5]")[..] else { panic!("one mistake") };
+        assert!(help.starts_with("write Always(34.5), or another of Always, "), "{help}");
+    }
+
+    #[test]
+    fn a_character_that_looks_like_another_is_told_with_that_one() {
+        for (text, words) in [
+            ("[Always(\u{2212}3)]", "write the minus of the keyboard: -"),
+            ("[# none\n]", "comments begin with //"),
+        ] {
+            let found = told::<Vec<Scatter>>(text);
+            assert_eq!(found, [(Code::Syntax, words.to_string())], "{text}");
         }
     }
 

@@ -12,6 +12,8 @@ use crate::scene::units::{self, Resolved};
 
 /// Counts, in words.
 const COUNTS: &str = "counts are whole numbers from 0 to 4294967295";
+/// What serde calls a choice with values.
+const VARIANT: &str = "tuple variant ";
 /// Where fields and choices are listed.
 pub(super) const REFERENCE: &str = "docs/reference/scene.md lists the fields and their choices";
 
@@ -66,6 +68,9 @@ pub(super) fn explain(error: &SpannedError, plain: &Resolved, text: &str, tree: 
             at(Code::WrongType, message).with_help(REFERENCE)
         }
         code => {
+            if let Some((message, help)) = look_alike(text, start) {
+                return at(Code::Syntax, message).with_help(help);
+            }
             if let Some((begins, number)) = decimal_comma(code, text, start) {
                 let message = format!("`{}` is two values", number.replace('.', ","));
                 let found = Diagnostic { path: tree.path_at(begins), ..at(Code::Syntax, message) };
@@ -92,6 +97,20 @@ pub(super) fn explain(error: &SpannedError, plain: &Resolved, text: &str, tree: 
             at(kind, message).with_help(help)
         }
     }
+}
+
+/// That a character looks like one of a scene, and is another: the minus and the quotes of a word processor, the sign of comments of other languages.
+fn look_alike(text: &str, at: usize) -> Option<(String, &'static str)> {
+    let found = text[at..].chars().next()?;
+    let help = match found {
+        '\u{2212}' | '\u{2013}' | '\u{2014}' => "write the minus of the keyboard: -",
+        '\u{201c}' | '\u{201d}' | '\u{201e}' | '\u{2018}' | '\u{2019}' | '\'' => {
+            "write the text between straight quotes: \"text\""
+        }
+        '#' | '%' | ';' => "comments begin with //",
+        _ => return None,
+    };
+    Some((format!("`{found}` has no meaning here"), help))
 }
 
 /// Whether a value is looked for at the end of a text.
@@ -298,6 +317,12 @@ fn in_words(error: &RonError) -> String {
         RonError::ExceededRecursionLimit => "brackets are nested too deeply",
         RonError::FloatUnderscore | RonError::UnderscoreAtBeginning => {
             "an underscore in a number stands between two digits"
+        }
+        RonError::ExpectedDifferentLength { expected, found } if expected.starts_with(VARIANT) => {
+            let (name, count) = expected[VARIANT.len()..].split_once(" with ").unwrap_or_default();
+            let name = name.rsplit("::").next().unwrap_or_default();
+            let count = count.split(' ').next().unwrap_or_default();
+            return format!("`{name}` takes {count} values, and has {found}");
         }
         RonError::ExpectedDifferentLength { expected, found } => {
             let expected = plain_words(expected);

@@ -1,6 +1,6 @@
 //! The worst hops, rebounds and ringing of all blocks.
 
-use ndda_mesh::BlockId;
+use ndda_mesh::{BlockId, Vec3};
 
 use super::{BlockBalance, BlockDiagnostics};
 use crate::diagnostics::worst::Worst;
@@ -37,14 +37,18 @@ impl BlockDiagnostics {
         worst
     }
 
-    /// Most times that a block which deforms nearly lost and regained the contact that presses it from opposite sides, friction acting; what rounding may have
-    /// done does not count, nor what is slow beside the largest speed.
-    pub(crate) fn squeezes(&self, largest_m_s: f64, rounding_j: f64) -> Worst {
+    /// Records the normal force of a facet of one block, which another presses [N].
+    pub(crate) fn add_push(&mut self, owner: BlockId, target: BlockId, push_n: &Vec3) {
+        self.balances[owner.index()].squeeze.press(push_n);
+        self.balances[target.index()].squeeze.press(&-push_n);
+    }
+
+    /// Most times that a block nearly lost and regained the contact that presses it from opposite sides, friction acting; what rounding may have done does not count.
+    pub(crate) fn squeezes(&self, rounding_j: f64) -> Worst {
         let mut worst = Worst::default();
         for (block, (balance, scale)) in self.balances.iter().zip(&self.scales).enumerate() {
             let (times, speed_m_s) = balance.squeeze.regained();
-            let counts = scale.deforms && speed_m_s > FAST * largest_m_s;
-            if counts && 0.5 * scale.mass_kg * speed_m_s * speed_m_s > rounding_j {
+            if 0.5 * scale.mass_kg * speed_m_s * speed_m_s > rounding_j {
                 worst.take(f64::from(times), block);
             }
         }

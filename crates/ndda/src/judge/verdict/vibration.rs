@@ -16,7 +16,7 @@ const MOST_VIBRATION: f64 = 12.0 * SPEED;
 const MOST_GIVEN: f64 = SPEED * SPEED;
 /// Hops in a row that may each be longer than the one before. One more makes nine flights in growing order: by chance one in 362 880.
 const MOST_GROWING: f64 = 7.0;
-/// Times that a block between others nearly lost and regained contact: a key block that falls as statics says has none, one that hangs 36 to 256.
+/// Times that a block between others nearly lost and regained contact: a key block that falls as statics says has none, one that hangs 16 to 534.
 const MOST_SQUEEZES: f64 = 15.0;
 /// Damping in proportion to stiffness that ends such vibrations, over the time that a wave takes through the block: a tenth of critical.
 const DAMPED: f64 = 0.06;
@@ -37,7 +37,7 @@ pub(super) fn creep(simulation: &Simulation) -> [Entry; 2] {
     let cure = if squeezes.value > MOST_SQUEEZES {
         format!(
             "because it vibrates between others, which makes its shear springs slip: {}",
-            damp_rock(simulation, squeezes)
+            against_squeezes(simulation, squeezes)
         )
     } else {
         format!(
@@ -101,7 +101,7 @@ pub(super) fn chatter(simulation: &Simulation) -> Option<Entry> {
     (worst.value > 0.0).then(|| warned(check, worst.value, MOST_CHATTERING, reason))
 }
 
-/// Whether blocks that deform vibrate between others while friction acts on them; shown only beyond the limit.
+/// Whether blocks vibrate between others while friction acts on them; shown only beyond the limit.
 pub(super) fn squeezes(simulation: &Simulation) -> Option<Entry> {
     let worst = simulation.invariants().squeezes;
     let reason = format!(
@@ -109,20 +109,32 @@ pub(super) fn squeezes(simulation: &Simulation) -> Option<Entry> {
          {MOST_SQUEEZES}, and may hang or slide too slowly; {}",
         name(simulation, worst),
         worst.value,
-        damp_rock(simulation, worst)
+        against_squeezes(simulation, worst)
     );
     let check = "contact between others lost and regained";
     (worst.value > MOST_SQUEEZES).then(|| warned(check, worst.value, MOST_SQUEEZES, reason))
 }
 
-/// The cure of vibrations of a block between others: damping by its material, as much for each size.
-fn damp_rock(simulation: &Simulation, found: Worst) -> String {
-    let (block, blocks) = (BlockId(found.block), simulation.blocks());
+/// The cure of vibrations of a block between others: damping by its material, as much for each size, or by that of the blocks which press it.
+fn against_squeezes(simulation: &Simulation, found: Worst) -> String {
+    let deforms =
+        |block: &BlockId| matches!(simulation.shape(*block).kind, BodyKind::Elastic | BodyKind::Affine);
+    let own = Some(BlockId(found.block)).filter(deforms);
+    let Some(block) = own.or_else(|| simulation.blocks().ids().find(deforms)) else {
+        return "give contacts a restitution of 0.5".into();
+    };
+    let whose = if own.is_some() { "its material" } else { "the material of the blocks that press it" };
     let material = simulation.shape(block).material.as_ref();
     let wave_m_s = (material.moduli()[(2, 2)] / material.density_kg_m3()).sqrt();
+    let blocks = simulation.blocks();
     let bounds = Aabb::around(&blocks.rest_position[blocks.nodes_of(block)]);
     let across_s = (bounds.max - bounds.min).max() / wave_m_s;
-    format!("give its material `damping: (stiffness_s: {})`, or more", two_figures_down(DAMPED * across_s))
+    let damping_s = (DAMPED * across_s).max(2.0 * material.damping().stiffness_s);
+    let of_a_stack = match simulation.damps_contact() {
+        true => "",
+        false => "; blocks that only bounce on each other need a restitution of 0.5 instead",
+    };
+    format!("give {whose} `damping: (stiffness_s: {})`, or more{of_a_stack}", two_figures_down(damping_s))
 }
 
 /// Whether rebounds of contact made a block slide faster; shown only beyond the limit, and not where friction has shear springs, which hold less at first, and are meant to.
