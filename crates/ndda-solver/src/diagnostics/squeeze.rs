@@ -2,7 +2,8 @@
 //!
 //! What contact presses a block by from opposite sides does not move it, but friction is in proportion to it. Where the block, or those that press it, vibrate so
 //! strongly that its sides nearly lose contact in turn, contact cannot pull, so that the mean of the forces grows beyond that of the block at rest, and friction
-//! with it: a block that must slide out may hang. A block on one plane has no such forces: there the mean follows from its weight.
+//! with it: a block that must slide out may hang. A block on one plane has no such forces: there the mean follows from its weight. So does that of what
+//! lies on a block, and forces along the loads of a block do not count.
 
 use ndda_mesh::Vec3;
 use serde::{Deserialize, Serialize};
@@ -43,10 +44,12 @@ pub(crate) struct Fastest {
 }
 
 impl Squeeze {
-    /// Adds the normal force on a facet in this step [N].
-    pub(crate) fn press(&mut self, force_n: &Vec3) {
-        self.sizes_n += force_n.norm();
-        self.resultant_n += force_n;
+    /// Adds the normal force on a facet in this step [N], less its part along the loads of the block.
+    pub(crate) fn press(&mut self, force_n: &Vec3, load_m_s2: &Vec3) {
+        let along = force_n.dot(load_m_s2) / load_m_s2.norm_squared().max(f64::MIN_POSITIVE);
+        let across_n = force_n - along * load_m_s2;
+        self.sizes_n += across_n.norm();
+        self.resultant_n += across_n;
     }
 
     /// Books a step of a block of a mass: half of what the sizes of forces add up to beyond the size of their sum is what presses it from opposite sides.
@@ -136,15 +139,17 @@ mod tests {
     }
 
     #[test]
-    fn a_block_on_one_plane_is_not_squeezed_and_one_between_two_walls_is_by_the_force_of_one() {
+    fn a_block_in_a_stack_is_not_squeezed_and_one_between_two_walls_is_by_the_force_of_one() {
         let squeezed_m_s2 = |forces_n: &[Vec3]| {
             let mut squeeze = Squeeze::default();
-            let drive = RigidForcing { has_friction: true, ..RigidForcing::default() };
-            forces_n.iter().for_each(|force_n| squeeze.press(force_n));
+            let load_m_s2 = Vec3::new(0.0, 0.0, -10.0);
+            let drive = RigidForcing { has_friction: true, load_m_s2, ..RigidForcing::default() };
+            forces_n.iter().for_each(|force_n| squeeze.press(force_n, &load_m_s2));
             squeeze.close_step(1e-3, (2.0, &drive), &ALONE);
             squeeze.extreme_m_s2
         };
         assert_eq!(squeezed_m_s2(&[Vec3::new(0.0, 0.0, 6.0), Vec3::new(0.0, 0.0, 1.0)]), 0.0);
+        assert_eq!(squeezed_m_s2(&[Vec3::new(0.0, 0.0, 9.0), Vec3::new(0.0, 0.0, -6.0)]), 0.0);
         assert_eq!(squeezed_m_s2(&[Vec3::new(6.0, 0.0, 0.0), Vec3::new(-6.0, 0.0, 0.0)]), 3.0);
     }
 }

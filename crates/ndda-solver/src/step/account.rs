@@ -5,6 +5,7 @@ use crate::step::report::StepReport;
 use std::time::Instant;
 
 use ndda_contact::ContactReport;
+use ndda_mesh::{BlockId, Vec3};
 use ndda_ranks::ExactSum;
 
 use crate::diagnostics::block_sums::ExactVector;
@@ -143,8 +144,14 @@ impl Simulation {
     fn record_pushes(&mut self, contact: &ContactReport) {
         let Some(model) = self.contact.as_ref().filter(|model| model.has_friction()) else { return };
         if contact.contact_pairs > 0 {
-            let books = self.audit.ledger.blocks();
-            model.each_push(&mut |owner, target, push_n| books.add_push(owner, target, push_n));
+            let (books, bodies) = (self.audit.ledger.blocks(), &self.bodies);
+            let mut add = |block: BlockId, push_n: &Vec3| {
+                books.add_push(block, push_n, &bodies[block.index()].report.drive.load_m_s2);
+            };
+            model.each_push(&mut |owner, target, push_n| {
+                add(owner, push_n);
+                add(target, &-push_n);
+            });
         }
     }
 

@@ -37,10 +37,9 @@ impl BlockDiagnostics {
         worst
     }
 
-    /// Records the normal force of a facet of one block, which another presses [N].
-    pub(crate) fn add_push(&mut self, owner: BlockId, target: BlockId, push_n: &Vec3) {
-        self.balances[owner.index()].squeeze.press(push_n);
-        self.balances[target.index()].squeeze.press(&-push_n);
+    /// Records the normal force on a facet of a block, or of another that presses it [N], under its loads [m/s²].
+    pub(crate) fn add_push(&mut self, block: BlockId, push_n: &Vec3, load_m_s2: &Vec3) {
+        self.balances[block.index()].squeeze.press(push_n, load_m_s2);
     }
 
     /// Most times that a block nearly lost and regained the contact that presses it from opposite sides, friction acting; what rounding may have done does not count.
