@@ -15,7 +15,7 @@ use super::error::{Fault, FileProblem, MeshFileError, ending};
 use super::lines::{Line, Lines, parse, real};
 use super::surface_file;
 use crate::limited;
-pub use holes::Holes;
+pub use holes::{Holes, connected};
 
 /// Most heights of a grid: more would need gigabytes once they are rock.
 const MOST_HEIGHTS: u64 = 1 << 24;

@@ -1,9 +1,10 @@
 //! Blocks between others whose contact vibrates while friction acts.
 //!
-//! What contact presses a block by from opposite sides does not move it, but friction is in proportion to it. Where the block, or those that press it, vibrate so
-//! strongly that its sides nearly lose contact in turn, contact cannot pull, so that the mean of the forces grows beyond that of the block at rest, and friction
-//! with it: a block that must slide out may hang. A block on one plane has no such forces: there the mean follows from its weight. So does that of what
-//! lies on a block, and forces along the loads of a block do not count.
+//! Friction on a block between two others is in proportion to the normal forces by which these press it, though the forces cancel each other. Where the block
+//! or its neighbours vibrate so strongly that its sides nearly lose contact in turn, the mean of these forces rises, since contact cannot pull, and friction
+//! with it: a block that must slide out may hang.
+//!
+//! Forces along the loads of a block do not count. On one plane, and in a stack, their mean follows from the weight.
 
 use ndda_mesh::Vec3;
 use serde::{Deserialize, Serialize};

@@ -18,7 +18,7 @@ use serde::Serialize;
 
 pub use super::bonded::{Bonded, Bonds};
 use super::{Fault, solid, vec3};
-use crate::forecast::admit;
+use crate::forecast::{admit, gaps};
 use crate::numbers::{counted, four_figures};
 use joints::Discs;
 
@@ -44,7 +44,7 @@ pub struct RockReport {
     pub removed: (usize, f64),
     /// Cuts that would have left a needle thinner than rounding, and were not made.
     pub refused: usize,
-    /// What heights its terrain lacks within, in words.
+    /// Warning of heights that are missing within its terrain; none where there are none.
     #[serde(skip)]
     pub gaps: Option<String>,
     /// What discs cut; left out where there are none.
@@ -296,7 +296,7 @@ pub(super) fn body(rock: &Rock, blocks: &BlockSet, block: BlockId) -> scene::Bod
     if holds(&rock.fixed, &centroid) { scene::Body::Fixed } else { rock.body }
 }
 
-/// A domain, and what heights it lacks within, in words.
+/// A domain, and a warning of heights that are missing within its terrain.
 fn domain(domain: &scene::Domain, folder: &Path) -> Result<(Domain, Option<String>), String> {
     let whole = match domain {
         scene::Domain::Box { min_m, max_m } => {
@@ -319,19 +319,16 @@ fn domain(domain: &scene::Domain, folder: &Path) -> Result<(Domain, Option<Strin
         scene::Domain::TerrainFile { file, origin_m, base_m } => {
             let mut grid = TerrainGrid::read(&folder.join(file), None).map_err(|e| e.to_string())?;
             grid.origin_m = [grid.origin_m[0] - origin_m[0], grid.origin_m[1] - origin_m[1]];
-            return Ok((terrain(&grid, *base_m)?, gaps(&grid)));
+            return Ok((terrain(&grid, *base_m)?, shaft(&grid)));
         }
     };
     whole.map(|domain| (domain, None))
 }
 
-/// Cells of terrain without heights that others enclose, in words.
-fn gaps(grid: &TerrainGrid) -> Option<String> {
-    let (holes, [x, y]) = grid.holes()?;
-    let cells = counted(holes.count, "cell within the terrain has", "cells within the terrain have");
-    Some(format!(
-        "{cells} no height at some corner, the first at ({x:.1}, {y:.1}) m: the rock has a shaft there, down to its base"
-    ))
+/// Warning of a shaft that missing heights leave in rock, if any.
+fn shaft(grid: &TerrainGrid) -> Option<String> {
+    let (holes, middle) = grid.holes()?;
+    Some(gaps::told(&holes, middle, "the rock has a shaft there, down to its base"))
 }
 
 /// Two triangles per cell of the grid whose four corners have heights.

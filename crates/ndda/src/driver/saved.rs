@@ -58,7 +58,7 @@ pub enum LoadError {
         file: String,
         /// The parts.
         own: String,
-        /// Those that it is resumed with.
+        /// The parts that it is resumed with.
         here: String,
     },
     /// Files that the scene names have changed.

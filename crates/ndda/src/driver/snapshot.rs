@@ -33,9 +33,9 @@ pub enum DriverRestoreError {
         "the snapshot is of a simulation with {own}, and this one has {here}: restore it in a simulation that has it"
     )]
     Own {
-        /// The parts of its simulation.
+        /// The parts that the snapshot was computed with.
         own: String,
-        /// Those of this one.
+        /// The parts of the simulation that it is restored in.
         here: String,
     },
     /// Meshes that the scene names have changed.

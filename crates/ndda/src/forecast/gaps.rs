@@ -2,9 +2,17 @@
 
 use ndda_io::code::Code;
 use ndda_io::diagnostic::{Diagnostic, Severity};
+use ndda_io::mesh::terrain_grid::Holes;
 use ndda_io::read::LoadedScene;
 
 use crate::build::RockReport;
+use crate::numbers::counted;
+
+/// That cells of terrain lack heights, of which the first has its middle at (x, y) [m]; `so` is what follows.
+pub(crate) fn told(holes: &Holes, [x, y]: [f64; 2], so: &str) -> String {
+    let cells = counted(holes.count, "cell within the terrain has", "cells within the terrain have");
+    format!("{cells} no height at some corner, the first at ({x:.1}, {y:.1}) m: {so}")
+}
 
 const CURE: &str = "fill in the heights, unless a shaft is meant";
 
@@ -13,7 +21,7 @@ pub fn sentences(rocks: &[RockReport]) -> Vec<String> {
     rocks.iter().filter_map(|rock| Some(format!("{}; {CURE}", rock.gaps.as_ref()?))).collect()
 }
 
-/// The same at their places in the scene.
+/// The same warnings, with the rock in the scene that each is about.
 pub fn warnings(loaded: &LoadedScene, rocks: &[RockReport]) -> Vec<Diagnostic> {
     let warning = |(index, rock): (usize, &RockReport)| {
         let place = format!("rock[{index}].domain");

@@ -3,17 +3,14 @@
 use ndda_io::mesh::terrain_grid::Holes;
 
 use super::terrain::Terrain;
-use crate::numbers::counted;
+use crate::forecast::gaps;
 
 impl Terrain {
     /// Warning of cells without heights that the terrain encloses; none where there are none.
     pub(super) fn holes(&self) -> Option<String> {
-        let Holes { count, first } = Holes::of(self.cells(), |i, j| self.has(i, j))?;
-        let [x, y] = self.map_m(first.map(|i| i as f64 + 0.5));
-        let holes = counted(count, "cell within the terrain has", "cells within the terrain have");
-        Some(format!(
-            "{holes} no height at some corner, the first at ({x:.1}, {y:.1}) m: boulders that get there count as having left the terrain"
-        ))
+        let holes = Holes::of(self.cells(), |i, j| self.has(i, j))?;
+        let middle = self.map_m(holes.first.map(|i| i as f64 + 0.5));
+        Some(gaps::told(&holes, middle, "boulders that get there count as having left the terrain"))
     }
 }
 

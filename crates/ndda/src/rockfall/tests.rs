@@ -124,17 +124,12 @@ fn a_boulder_beside_a_gap_in_the_heights_moves_as_without_the_ground_beyond_it()
     // A plane of 0°, on which a cube stays; the column from x = 22 to 23 m has no heights, and the ground goes on beyond it.
     let folder = tempfile::tempdir().unwrap();
     let row = |gap: bool, beyond: &str| -> String {
-        (0..=40)
-            .map(|i| {
-                if gap && i == 22 {
-                    "-9999 "
-                } else if i > 22 {
-                    beyond
-                } else {
-                    "0 "
-                }
-            })
-            .collect()
+        let height = |i: usize| match i {
+            22 if gap => "-9999 ",
+            23.. => beyond,
+            _ => "0 ",
+        };
+        (0..=40).map(height).collect()
     };
     let ends = [(false, "0 "), (true, "0 "), (true, "-9999 ")].map(|(gap, beyond)| {
         let head = "ncols 41\nnrows 41\nxllcenter 0\nyllcenter 0\ncellsize 1\nNODATA_value -9999\n";

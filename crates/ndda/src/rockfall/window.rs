@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use ndda_contact::{FrictionLaw, FrictionLawTable, PotentialContact, RestitutionTable, VelocityCoulomb};
 use ndda_fem::{LinearElastic, Material};
+use ndda_io::mesh::terrain_grid::connected;
 use ndda_mesh::{BlockMesh, BlockSet, Vec3};
 use ndda_solver::{AutoStep, BodyKind, BodySetup, Direct, Mass, Midpoint, Setup, Simulation};
 
@@ -120,39 +121,21 @@ impl Cells {
         1.0 / steepest.hypot(1.0)
     }
 
-    fn contain(self, (i, j): (usize, usize)) -> bool {
-        (self.from[0]..self.to[0]).contains(&i) && (self.from[1]..self.to[1]).contains(&j)
-    }
-
     fn each(self) -> impl Iterator<Item = (usize, usize)> {
         (self.from[1]..self.to[1]).flat_map(move |j| (self.from[0]..self.to[0]).map(move |i| (i, j)))
     }
 }
 
-/// The cells with heights that others with heights connect, edge by edge, with the one below a boulder, which leaves the terrain before it gets to any beyond a gap.
+/// The cells with heights that are connected edge by edge with the one below a boulder: it leaves the terrain before it gets to any beyond a gap.
 fn in_reach(terrain: &Terrain, cells: Cells, center: &Vec3) -> Vec<(usize, usize)> {
     let all: Vec<(usize, usize)> = cells.each().filter(|&(i, j)| terrain.has(i, j)).collect();
-    let width = cells.to[0] - cells.from[0];
-    let has_gaps = all.len() < width * (cells.to[1] - cells.from[1]);
+    let [width, length] = [0, 1].map(|axis| cells.to[axis] - cells.from[axis]);
+    let has_gaps = all.len() < width * length;
     let Some((below, _)) = terrain.cell_at([center.x, center.y]).filter(|_| has_gaps) else { return all };
-    let place = |(i, j): (usize, usize)| (j - cells.from[1]) * width + i - cells.from[0];
-    let (mut open, mut is_reached) = (all.clone(), vec![false; width * (cells.to[1] - cells.from[1])]);
-    is_reached[place(below.into())] = true;
-    // As a rule one pass along the rows and one back find nearly all.
-    loop {
-        let found = open.len();
-        open.retain(|&(i, j)| {
-            let sides = [(i.wrapping_sub(1), j), (i + 1, j), (i, j.wrapping_sub(1)), (i, j + 1)];
-            let joins = sides.into_iter().any(|side| cells.contain(side) && is_reached[place(side)]);
-            is_reached[place((i, j))] |= joins;
-            !joins
-        });
-        open.reverse();
-        if open.len() == found {
-            break;
-        }
-    }
-    all.into_iter().filter(|&cell| is_reached[place(cell)]).collect()
+    let [x, y] = cells.from;
+    let is_reached =
+        connected([width, length], [[below[0] - x, below[1] - y]], |i, j| terrain.has(x + i, y + j));
+    all.into_iter().filter(|&(i, j)| is_reached[(j - y) * width + i - x]).collect()
 }
 
 /// The ground of some cells below a boulder: a tetrahedron from each triangle to one point that is below all of them.

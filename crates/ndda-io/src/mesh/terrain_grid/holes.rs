@@ -12,30 +12,39 @@ pub struct Holes {
 }
 
 impl Holes {
-    /// Those of a grid of so many cells along x and y, of which some have heights at all corners; none where there are none.
+    /// The holes of a grid with a number of cells along x and y, where `has` tells whether a cell has heights at all corners; none if it has no holes.
     pub fn of([nx, ny]: [usize; 2], has: impl Fn(usize, usize) -> bool) -> Option<Self> {
-        let mut is_land: Vec<bool> = (0..nx * ny).map(|cell| has(cell % nx, cell / nx)).collect();
-        let is_at_border = |cell: usize| {
-            let (i, j) = (cell % nx, cell / nx);
-            i == 0 || j == 0 || i + 1 == nx || j + 1 == ny
-        };
+        let lacks = |i: usize, j: usize| !has(i, j);
+        let at_border = |i: usize, j: usize| i == 0 || j == 0 || i + 1 == nx || j + 1 == ny;
+        let all = (0..nx * ny).map(|cell| [cell % nx, cell / nx]);
         // Cells without heights that are connected to the border of the grid are outside of the terrain, and no holes.
-        let mut outside: Vec<usize> =
-            (0..nx * ny).filter(|&cell| is_at_border(cell) && !is_land[cell]).collect();
-        outside.iter().for_each(|&cell| is_land[cell] = true);
-        while let Some(cell) = outside.pop() {
-            let (i, j) = (cell % nx, cell / nx);
-            let beside = [(i.wrapping_sub(1), j), (i + 1, j), (i, j.wrapping_sub(1)), (i, j + 1)];
-            for (i, j) in beside.into_iter().filter(|&(i, j)| i < nx && j < ny) {
-                if !std::mem::replace(&mut is_land[j * nx + i], true) {
-                    outside.push(j * nx + i);
-                }
-            }
-        }
-        let first = is_land.iter().position(|land| !land)?;
-        let count = is_land.iter().filter(|land| !**land).count();
-        Some(Self { count, first: [first % nx, first / nx] })
+        let border = all.clone().filter(|&[i, j]| at_border(i, j) && lacks(i, j));
+        let is_outside = connected([nx, ny], border, lacks);
+        let mut holes = all.zip(is_outside).filter(|&([i, j], outside)| lacks(i, j) && !outside);
+        let (first, _) = holes.next()?;
+        Some(Self { count: 1 + holes.count(), first })
     }
+}
+
+/// Which cells of a grid, row by row, are connected edge by edge with one of some cells, through cells that pass.
+pub fn connected(
+    [nx, ny]: [usize; 2],
+    with: impl IntoIterator<Item = [usize; 2]>,
+    passes: impl Fn(usize, usize) -> bool,
+) -> Vec<bool> {
+    let (mut is_found, mut open) = (vec![false; nx * ny], Vec::new());
+    let mut take = |[i, j]: [usize; 2], open: &mut Vec<[usize; 2]>| {
+        if !std::mem::replace(&mut is_found[j * nx + i], true) {
+            open.push([i, j]);
+        }
+    };
+    with.into_iter().for_each(|cell| take(cell, &mut open));
+    while let Some([i, j]) = open.pop() {
+        let beside = [[i.wrapping_sub(1), j], [i + 1, j], [i, j.wrapping_sub(1)], [i, j + 1]];
+        let inside = beside.into_iter().filter(|&[i, j]| i < nx && j < ny && passes(i, j));
+        inside.for_each(|cell| take(cell, &mut open));
+    }
+    is_found
 }
 
 impl TerrainGrid {

@@ -12,7 +12,7 @@ use crate::scene::units::{self, Resolved};
 
 /// Counts, in words.
 const COUNTS: &str = "counts are whole numbers from 0 to 4294967295";
-/// What serde calls a choice with values.
+/// How serde begins its words for a choice that takes several values in brackets.
 const VARIANT: &str = "tuple variant ";
 /// Where fields and choices are listed.
 pub(super) const REFERENCE: &str = "docs/reference/scene.md lists the fields and their choices";

@@ -33,28 +33,29 @@ pub(super) const SETTLE: &str = "`settle: ()` (in place of gravity_ramp_s)";
 pub(super) fn creep(simulation: &Simulation) -> [Entry; 2] {
     let worst = simulation.invariants();
     let (place, speed) = (worst.creep_place, worst.creep_speed);
-    let squeezes = worst.squeezes;
-    let cure = if squeezes.value > MOST_SQUEEZES {
-        format!(
+    let vibrates = |found: Worst| worst.squeezes.value > MOST_SQUEEZES && worst.squeezes.block == found.block;
+    let cure = |found: Worst| match vibrates(found) {
+        true => format!(
             "because it vibrates between others, which makes its shear springs slip: {}",
-            against_squeezes(simulation, squeezes)
-        )
-    } else {
-        format!(
+            against_squeezes(simulation, found)
+        ),
+        false => format!(
             "because vibrating contact makes its shear springs slip: {}, or remove shear_penalty_pa_m",
             against_creep(simulation.damps_contact(), simulation.began_at_rest())
-        )
+        ),
     };
     let where_it_is = format!(
-        "block `{}` crept by {:.2} of its smallest element size, limit {PLACE}, {cure}",
+        "block `{}` crept by {:.2} of its smallest element size, limit {PLACE}, {}",
         name(simulation, place),
-        place.value
+        place.value,
+        cure(place)
     );
     let how_fast = format!(
-        "block `{}` creeps at {:.1} % of the largest speed, limit {:.0} %, {cure}",
+        "block `{}` creeps at {:.1} % of the largest speed, limit {:.0} %, {}",
         name(simulation, speed),
         100.0 * speed.value,
-        100.0 * SPEED
+        100.0 * SPEED,
+        cure(speed)
     );
     [
         warned("creep / element size", place.value, PLACE, where_it_is),
@@ -115,7 +116,7 @@ pub(super) fn squeezes(simulation: &Simulation) -> Option<Entry> {
     (worst.value > MOST_SQUEEZES).then(|| warned(check, worst.value, MOST_SQUEEZES, reason))
 }
 
-/// The cure of vibrations of a block between others: damping by its material, as much for each size, or by that of the blocks which press it.
+/// The cure of vibrations of a block between others: damping of its material, or of the blocks that press it, in proportion to size over wave speed.
 fn against_squeezes(simulation: &Simulation, found: Worst) -> String {
     let deforms =
         |block: &BlockId| matches!(simulation.shape(*block).kind, BodyKind::Elastic | BodyKind::Affine);
