@@ -92,6 +92,22 @@ fn a_grid_gives_a_table_of_quantities_and_a_picture() {
 }
 
 #[test]
+fn warnings_of_the_scenes_are_said_once_with_the_cases_that_have_them() {
+    let folder = folder();
+    let incompressible = ROCK.replace("0.25", "0.495");
+    fs::write(folder.path().join("rock.ron"), incompressible).unwrap();
+    let all = done(folder.path(), &["study", "fall.ron", "--vary", "parameters.speed_m_s=1,2"]);
+    assert_eq!(all.matches("warning").count(), 1, "{all}");
+    assert!(
+        all.contains("warning: include: rock.ron:1:41: [0].poisson: nearly incompressible; four-node"),
+        "{all}"
+    );
+    fs::write(folder.path().join("rock.ron"), ROCK).unwrap();
+    let one = done(folder.path(), &["study", "fall.ron", "--vary", "parameters.half_g_m_s2=4,5,5000"]);
+    assert!(one.contains("warning in 1 of 3 cases: gravity_m_s2: 10000 m/s²"), "{one}");
+}
+
+#[test]
 fn samples_are_the_same_for_any_number_of_jobs_and_after_an_interruption() {
     let folder = folder();
     let args = |out: &'static str, jobs: &'static str| {

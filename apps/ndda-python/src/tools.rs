@@ -45,7 +45,12 @@ pub fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
 
 /// The words of the command line, whose options are arguments here.
 fn value_error(error: impl Display) -> PyErr {
-    PyValueError::new_err(error.to_string().replace("--", ""))
+    let text = error.to_string();
+    let text = text.strip_prefix("--").unwrap_or(&text);
+    let before = [" ", "(", "`", "\""];
+    PyValueError::new_err(
+        before.iter().fold(text.to_string(), |text, sign| text.replace(&format!("{sign}--"), sign)),
+    )
 }
 
 fn study_error(py: Python<'_>, error: &StudyError) -> PyErr {

@@ -40,8 +40,8 @@ impl Motion {
         }
     }
 
-    /// How far the velocity at rows between two times is from anything between those at both ends [m/s]: what comes and goes in
-    /// between.
+    /// Largest distance of a velocity of a row between two times from all those on the straight way between the velocities at both ends [m/s]: what comes and
+    /// goes in between.
     pub fn unresolved_m_s(&self, from_s: f64, to_s: f64) -> f64 {
         match self {
             Self::Rows(rows) => {
@@ -57,7 +57,7 @@ impl Motion {
         }
     }
 
-    /// Largest distance of the velocities at some times from those between the velocities at two [m/s].
+    /// Largest distance of the velocities at some times from the straight way between the velocities at two times [m/s].
     fn farthest_velocity(&self, from_s: f64, to_s: f64, times_s: impl Iterator<Item = f64>) -> f64 {
         let (start, end) = (self.velocity(from_s), self.velocity(to_s));
         let way = end - start;

@@ -21,8 +21,8 @@ use ndda_mesh::{Mat3, Vec3};
 use crate::material::Material;
 use crate::motion::Motion;
 
-/// A direction of motion that a wave along k does not keep: part of ρ c² by which A(k, k) d turns away from d.
-const POLARISED: f64 = 1e-6;
+/// d is the polarisation of a wave along k if A(k, k) d differs from ρ c² d by at most this part of ρ c².
+const POLARISATION_TOLERANCE: f64 = 1e-6;
 
 /// A plane wave that arrives from outside.
 #[derive(Clone, Debug, PartialEq)]
@@ -90,7 +90,7 @@ pub struct Quiet {
     /// Displacements of the waves.
     pub waves: Vec<Motion>,
     /// Of each wave, the direction in which it travels and that in which it moves the rock.
-    pub ways: Vec<(Vec3, Vec3)>,
+    pub directions: Vec<(Vec3, Vec3)>,
 }
 
 impl Quiet {
@@ -107,7 +107,7 @@ impl Quiet {
                 faces.waves.iter().map(|wave| speed_m_s(*beyond, wave)).collect::<Result<_, _>>()?;
             let first = quiet.waves.len();
             quiet.waves.extend(faces.waves.iter().map(|wave| wave.motion.clone()));
-            quiet.ways.extend(faces.waves.iter().map(|wave| (wave.along, wave.moves)));
+            quiet.directions.extend(faces.waves.iter().map(|wave| (wave.along, wave.moves)));
             for triangle in &faces.triangles {
                 let area = triangle_area_vector(&triangle.map(|n| rest[n as usize]));
                 let (third, normal) = (area.norm() / 3.0, area.normalize());
@@ -161,7 +161,7 @@ pub fn speed_m_s(material: &dyn Material, wave: &PlaneWave) -> Result<f64, NoWav
     let moves = wave.moves.normalize();
     let push = traction(material, &wave.along, &wave.along) * moves;
     let modulus = push.dot(&moves);
-    if (push - modulus * moves).norm() > POLARISED * modulus {
+    if (push - modulus * moves).norm() > POLARISATION_TOLERANCE * modulus {
         return Err(NoWave { along: wave.along, moves });
     }
     Ok((modulus / material.density_kg_m3()).sqrt())
@@ -232,7 +232,7 @@ mod tests {
     }
 
     #[test]
-    fn a_way_across_a_face_brings_the_traction_of_the_wave_beside_what_it_takes_to_move_the_face() {
+    fn a_wave_along_a_face_loads_it_with_its_own_shear_stress() {
         // σ_xz = −ρ c_s v_x of an S wave along z is the traction of a face of normal x along z.
         let (n, k) = (Vec3::x(), Vec3::z());
         let c = speed_m_s(&rock(), &wave(k, n)).unwrap();

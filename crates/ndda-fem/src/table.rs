@@ -42,7 +42,8 @@ impl Table {
 pub struct Between {
     /// Its mean, exact.
     pub mean: f64,
-    /// Overshoot of its integral from the first time on beyond both of its ends [s], which the mean does not show.
+    /// How far the integral from the first time on leaves the interval between 0 and its final value [s, times the unit of the table]: what comes and goes
+    /// in between, which the mean does not show.
     pub beyond_s: f64,
 }
 

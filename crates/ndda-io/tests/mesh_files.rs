@@ -193,6 +193,26 @@ const VTU: &str = "<?xml version='1.0'?><VTKFile type='UnstructuredGrid' version
     <DataArray type='UInt8' Name='types' format='ascii'>10</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>";
 
 #[test]
+fn a_node_beyond_the_last_one_is_refused_also_in_a_second_piece() {
+    let from = VTU.find("<Piece").unwrap();
+    let to = VTU.find("</UnstructuredGrid>").unwrap();
+    for index in ["18446744073709551615", "-1", "4", "2.5"] {
+        let piece = VTU[from..to].replace("0 1 2 3", &format!("0 1 2 {index}"));
+        for pieces in [piece.clone(), format!("{}{piece}", &VTU[from..to])] {
+            let text = VTU.replace(&VTU[from..to], &pieces).replace("'Int32'", "'Float64'");
+            let error = said("vtu", &text);
+            assert!(error.contains("node") || error.contains("cell"), "{index}: {error}");
+        }
+    }
+}
+
+#[test]
+fn components_that_are_no_number_are_refused() {
+    let error = said("vtk", &LEGACY.replace("SCALARS Material int 1", "SCALARS Material int 1x"));
+    assert!(error.contains("the number of components"), "{error}");
+}
+
+#[test]
 fn a_folder_with_the_name_of_a_mesh_is_no_mesh() {
     let folder = tempfile::tempdir().unwrap();
     for ending in ["msh", "node", "ele", "inp", "vtu", "vtk"] {

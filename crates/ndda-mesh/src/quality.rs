@@ -1,4 +1,4 @@
-//! How good tetrahedra are, and how a mesh of many blocks is doing.
+//! Quality of tetrahedra, and a report on the meshes of many blocks.
 
 use std::fmt;
 
@@ -184,8 +184,11 @@ fn measure(block: &str, tet: u32, mesh: &BlockMesh, nodes: &[u32; 4]) -> Option<
         *corner = *mesh.nodes.get(*node as usize)?;
     }
     let angles = dihedral_angles_deg(&corners);
-    let height_m = tet_heights(&corners).into_iter().fold(f64::INFINITY, f64::min);
-    let height_m = if height_m.is_finite() { height_m } else { 0.0 };
+    let heights_m = tet_heights(&corners);
+    // Without a face of an area there are no angles, and what is not finite counts as flat.
+    let has_faces = heights_m.iter().all(|height_m| height_m.is_finite());
+    let height_m = if has_faces { heights_m.into_iter().fold(f64::INFINITY, f64::min) } else { 0.0 };
+    let angles = if has_faces { angles } else { [0.0; 6] };
     let (least, most) = angles.into_iter().fold((180.0, 0.0), |(a, b): (f64, f64), x| (a.min(x), b.max(x)));
     let is_inverted = tet_volume(&corners) < 0.0;
     Some(TetQuality {
@@ -241,6 +244,23 @@ mod tests {
         let report = quality([("a", &mesh)]);
         assert!((report.worst[0].aspect - 1.5f64.sqrt()).abs() < 1e-14);
         assert_eq!(report.dihedral_deg.counts[14], 1);
+    }
+
+    #[test]
+    fn what_is_no_tetrahedron_is_the_worst_one() {
+        let line = [0.0, 1.0, 2.0, 3.0].map(|x| Vec3::new(x, 0.0, 0.0));
+        let missing = [Vec3::zeros(), Vec3::x(), Vec3::y(), Vec3::new(0.0, f64::NAN, 1.0)];
+        for corners in [line, missing] {
+            let mut nodes = regular().to_vec();
+            nodes.extend(corners);
+            let mesh = BlockMesh { nodes, tets: vec![[0, 1, 2, 3], [4, 5, 6, 7]], ..BlockMesh::default() };
+            let report = quality([("a", &mesh)]);
+            assert_eq!(
+                (report.worst[0].tet, report.worst[0].dihedral_deg, report.worst[0].height_m),
+                (1, 0.0, 0.0)
+            );
+            assert_eq!(report.dihedral_deg.counts[0], 1);
+        }
     }
 
     #[test]

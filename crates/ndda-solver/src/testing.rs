@@ -117,8 +117,8 @@ pub fn contact_radius(integrator: &dyn TimeIntegrator, h: f64) -> f64 {
     map.complex_eigenvalues().iter().map(|value| value.norm()).fold(0.0, f64::max)
 }
 
-/// Panics unless `solver` keeps the contract of [`LinearSolver`]: it solves positive definite systems to round-off
-/// and refuses others.
+/// Panics unless `solver` keeps the contract of [`LinearSolver`]: it solves positive definite systems to round-off, refuses others, and makes no
+/// numbers of a load that is none.
 pub fn check_linear_solver(solver: &dyn LinearSolver) {
     for n in [1, 2, 40, 400] {
         // −1, 4 + i/n, −1 on and next to the diagonal, one long-range coupling.
@@ -140,6 +140,16 @@ pub fn check_linear_solver(solver: &dyn LinearSolver) {
         let error = x.iter().zip(&exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         assert!(error < 1e-13, "n = {n}: error {error}");
         check_multi(factor.as_ref());
+        for load in [f64::NAN, f64::INFINITY] {
+            let mut x = vec![1.0; n];
+            x[n / 2] = load;
+            let solved = factor.solve_in_place(&mut x, &mut scratch);
+            assert!(
+                solved.is_err() || !x[n / 2].is_finite(),
+                "n = {n}: a load of {load} moves by {}",
+                x[n / 2]
+            );
+        }
     }
     let indefinite = SymmetricMatrix::from_lower(2, |j, out| {
         out.extend([(j, if j == 0 { 1.0 } else { -1.0 })]);

@@ -143,8 +143,8 @@ impl Base {
         all.filter(|pressed| pressed.normal_n > 0.0 && pressed.arm_m > 0.0).collect()
     }
 
-    /// Part of the way from its foot to the rim, straight away from the middle of the base, that a force moves by as contact gives way, and that way [m]; all of it where
-    /// the block falls. At a corner a triangle bears, where at an edge a strip does. `soft_m_pa` is L₀/k_n.
+    /// Soft contact moves the foot of a force outwards, straight away from the middle of the base: by which part of the way from there to the rim (1 where the block
+    /// falls), and the length of that way [m]. At a corner a triangle bears, where at an edge a strip does. `soft_m_pa` is L₀/k_n.
     pub fn moved_outwards(&self, pulls: &[Pull], soft_m_pa: f64) -> Option<(f64, f64)> {
         let (normal_n, foot) = self.resultant(pulls);
         if self.inside(&foot).is_empty() {

@@ -8,13 +8,16 @@ use crate::surface::{BLOCK_ID, Surface};
 
 /// Arrays that the page shows otherwise: displacement is known from where blocks are.
 const SHOWN_OTHERWISE: [&str; 3] = [BLOCK_ID, PRESENT, "displacement_m"];
-/// Endings of names, and units.
-const UNITS: [(&str, &str); 10] = [
+/// Endings of names, and units; the longer ones before those that they end in.
+const UNITS: [(&str, &str); 13] = [
     ("_kg_m2_s", "kg m²/s"),
     ("_kg_m_s", "kg m/s"),
     ("_m_s2", "m/s²"),
     ("_m_s", "m/s"),
     ("_j_m3", "J/m³"),
+    ("_rad_s", "rad/s"),
+    ("_deg", "°"),
+    ("_kg", "kg"),
     ("_pa", "Pa"),
     ("_j", "J"),
     ("_n", "N"),

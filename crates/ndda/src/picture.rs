@@ -192,7 +192,11 @@ pub fn range(values: impl Iterator<Item = f64>) -> Range<f64> {
     if least > most {
         return 0.0..1.0;
     }
-    let room = if most > least { 0.04 * (most - least) } else { least.abs().max(1.0) };
+    let room = match (most > least, least == 0.0) {
+        (true, _) => 0.04 * (most - least),
+        (false, false) => least.abs(),
+        (false, true) => 1.0,
+    };
     least - room..most + room
 }
 

@@ -8,15 +8,13 @@ use plotters::coord::ranged1d::{AsRangedCoord, Ranged, ValueFormatter};
 use plotters::prelude::*;
 use serde::Serialize;
 
+use crate::field::split_unit;
 use crate::picture::{self, Area, Drawn, colour, log_axis, log_range, range, short};
 
 /// Width and height of the picture [px].
 pub(crate) const SIZE: (u32, u32) = (1160, 600);
 /// Width of the part of it that shows colours [px].
 const KEY: u32 = 230;
-/// Endings of columns that are units, the longer ones before those that they end in.
-const UNITS: [(&str, &str); 6] =
-    [("_kg_m2_s", "kg m²/s"), ("_kg_m_s", "kg m/s"), ("_m_s", "m/s"), ("_m", "m"), ("_j", "J"), ("_s", "s")];
 
 /// One line of a picture.
 pub(crate) struct Line {
@@ -152,20 +150,12 @@ fn find(table: &Table, name: &str) -> Result<usize, (String, Vec<String>)> {
     }
 }
 
-/// The unit that a column's name ends in.
-fn unit(name: &str) -> Option<&'static str> {
-    UNITS.iter().find(|(ending, _)| name.ends_with(ending)).map(|found| found.1)
-}
-
 /// Title of an axis: the one name that all share, and the unit that all share.
 fn axis_title(names: &[String]) -> String {
-    let first = unit(&names[0]);
-    let unit = first.filter(|_| names.iter().all(|name| unit(name) == first));
-    let bare = names[0].as_str();
-    let ending = UNITS.iter().find(|(ending, _)| bare.ends_with(ending)).map_or("", |found| found.0);
-    let name =
-        if names.iter().all(|name| *name == names[0]) { &bare[..bare.len() - ending.len()] } else { "" };
-    let unit = unit.map_or(String::new(), |unit| format!("[{unit}]"));
+    let (bare, first) = split_unit(&names[0]);
+    let is_shared = !first.is_empty() && names.iter().all(|name| split_unit(name).1 == first);
+    let name = if names.iter().all(|name| *name == names[0]) { bare } else { "" };
+    let unit = if is_shared { format!("[{first}]") } else { String::new() };
     format!("{} {unit}", name.replace('_', " ")).trim().to_string()
 }
 

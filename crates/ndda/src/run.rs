@@ -27,6 +27,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
+use ndda_io::read::LoadedScene;
 use ndda_io::table::Table;
 use ndda_io::{OutputFolder, WriteError, checkpoint};
 use ndda_ranks::{Communicator, agree};
@@ -293,18 +294,13 @@ impl Run {
         let mut summary = summarise(&simulation, &outputs.recorder, ending);
         summary.stages = std::mem::take(&mut outputs.stages.rows);
         let (folder, history) = outputs.end();
-        let (sensitivity, built, tell, stop) = (self.sensitivity, self.built, self.tell, self.stop);
+        let (built, stop) = (self.built, self.stop);
         let twins = match is_whole(&summary) {
-            true => twin::twins(sensitivity, &simulation),
+            true => twin::twins(self.sensitivity, &simulation),
             false => Vec::new(),
         };
-        let settle = loaded.scene.settle.map(crate::build::settle);
-        let again = match loaded.scene.stages.is_empty() {
-            true => built.as_ref().map(|start| Again::FromStart { start, settle }),
-            false => Some(Again::ThroughStages { loaded: &loaded, folder: &beside, stop: &stop }),
-        };
-        if let Some(again) = again.filter(|_| !twins.is_empty()) {
-            tell(&twin::told(&twins, &simulation));
+        if let Some(again) = again(&loaded, &beside, built.as_ref(), &stop).filter(|_| !twins.is_empty()) {
+            (self.tell)(&twin::told(&twins, &simulation));
             twin::judge(&mut summary, &mut simulation, (&again, &twins), (&stop, self.strict));
         }
         if let (Some(folder), Some(log)) = (folder, &mut log) {
@@ -312,6 +308,20 @@ impl Run {
         }
         Ok(Outcome { summary, history, simulation })
     }
+}
+
+/// How the scene can be run again; not at all where its start was not kept.
+fn again<'a>(
+    loaded: &'a LoadedScene,
+    folder: &'a Path,
+    built: Option<&'a StartSnapshot>,
+    stop: &'a Arc<AtomicBool>,
+) -> Option<Again<'a>> {
+    if !loaded.scene.stages.is_empty() {
+        return Some(Again::ThroughStages { loaded, folder, stop });
+    }
+    let settle = loaded.scene.settle.map(crate::build::settle);
+    built.map(|start| Again::FromStart { start, settle })
 }
 
 /// Whether an accurate run has come to its end.

@@ -15,6 +15,7 @@ pub mod record;
 pub mod result;
 pub mod runner;
 pub mod table;
+pub mod warned;
 mod write;
 
 use std::path::{Path, PathBuf};

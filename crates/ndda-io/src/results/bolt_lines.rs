@@ -70,7 +70,11 @@ impl BoltSeries {
         let path = self.frames.join(bolts_name(self.times_s.len()));
         atomic::write(&path, file(lines).as_bytes())?;
         self.times_s.push(time_s);
-        atomic::write(&self.index, self.list().as_bytes())
+        let written = atomic::write(&self.index, self.list().as_bytes());
+        if written.is_err() {
+            self.times_s.pop();
+        }
+        written
     }
 
     fn list(&self) -> String {
@@ -190,6 +194,20 @@ mod tests {
         assert_eq!(listed.iter().map(|frame| frame.time_s).collect::<Vec<_>>(), [0.0, 0.1 + 0.2]);
         assert_eq!(BoltLine::read_all(&listed[0].path).unwrap(), []);
         assert_eq!(BoltLine::read_all(&listed[1].path).unwrap(), lines());
+    }
+
+    #[test]
+    fn a_frame_whose_index_cannot_be_written_is_none() {
+        let folder = tempfile::tempdir().unwrap();
+        let output = OutputFolder::create(folder.path(), false).unwrap();
+        let mut series = BoltSeries::new(&output, Vec::new()).unwrap();
+        // A folder stands where the index goes.
+        fs::create_dir(output.bolts_index()).unwrap();
+        series.push(0.0, &lines()).unwrap_err();
+        assert!(series.times_s().is_empty());
+        fs::remove_dir(output.bolts_index()).unwrap();
+        series.push(0.0, &lines()).unwrap();
+        assert_eq!(ListedFrame::read_all(&output.bolts_index()).unwrap().len(), 1);
     }
 
     #[test]

@@ -6,6 +6,7 @@ mod contact;
 mod friction;
 mod load;
 mod material;
+mod overturned;
 mod quiet;
 mod reference;
 mod restitution;

@@ -1,67 +1,16 @@
 //! Records of ground motion, from CSV files and those of the PEER data base, and what a scene does with them.
 
 mod at2;
+mod error;
 mod process;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
+pub use error::RecordError;
 pub use process::resampled;
 
 use crate::scene::{AccelerationUnit, Baseline, Record};
 use crate::{csv_text, limited};
-
-/// Why a record cannot be used.
-#[derive(Debug, thiserror::Error)]
-pub enum RecordError {
-    /// It is no table, or a row is not two numbers.
-    #[error("{}: {fault}", file.display())]
-    Table {
-        /// The file.
-        file: PathBuf,
-        /// The problem, with its line.
-        fault: String,
-    },
-    /// The file cannot be read.
-    #[error("{} cannot be read: {source}", file.display())]
-    Unreadable {
-        /// The file.
-        file: PathBuf,
-        /// The problem.
-        source: std::io::Error,
-    },
-    /// A spacing that leaves too few rows or makes too many.
-    #[error(
-        "{}: `resample_s` (--resample), or the shortest spacing of {given} rows, would make {rows} rows: give a spacing that makes between 2 and {MOST_ROWS}", file.display()
-    )]
-    Spacing {
-        /// The file.
-        file: PathBuf,
-        /// Rows that it would have.
-        rows: usize,
-        /// Rows that it has.
-        given: usize,
-    },
-    /// Values that are no record.
-    #[error("{}: line {line} {reason}", file.display())]
-    Line {
-        /// The file.
-        file: PathBuf,
-        /// Line of the file, the first being 1.
-        line: u64,
-        /// The problem.
-        reason: &'static str,
-    },
-    /// Accelerations that no ground can follow.
-    #[error(
-        "{}: the ground would move faster than light from {time_s} s on: give accelerations in m/s², or a smaller factor", file.display()
-    )]
-    Speed {
-        /// The file.
-        file: PathBuf,
-        /// Time of the row that brings it so far [s].
-        time_s: f64,
-    },
-}
 
 /// Spacings that differ by less than this part are even.
 const EVEN: f64 = 1e-4;
@@ -212,7 +161,12 @@ impl Record {
             }
         }
         if let Some(corners) = self.filter_hz {
-            process::filtered(&mut rows, corners);
+            let filter = |(slowest_hz, least_hz)| RecordError::Filter {
+                file: file.to_path_buf(),
+                slowest_hz,
+                least_hz,
+            };
+            process::filtered(&mut rows, corners).map_err(filter)?;
             told += &format!(", filtered from {} to {} Hz", corners.0, corners.1);
             if corners.1 >= 0.5 / (rows[1].0 - rows[0].0) {
                 told += " (the upper corner is beyond what the rows hold, and has no effect)";

@@ -32,11 +32,15 @@ pub fn is_with_unit(name: &str, without: &str) -> bool {
     name.strip_prefix(without).is_some_and(|rest| rest.starts_with('_'))
 }
 
-/// The name most like `found`, if any is like it.
+/// The name most like `found`, if any is like it, or the only one that begins with it.
 pub fn nearest<'a>(found: &str, expected: &[&'a str]) -> Option<&'a str> {
     let likeness = |name: &&str| strsim::jaro_winkler(found, name);
     let best = expected.iter().max_by(|a, b| likeness(a).total_cmp(&likeness(b)))?;
-    (likeness(best) >= ALIKE).then_some(*best)
+    if likeness(best) >= ALIKE {
+        return Some(*best);
+    }
+    let mut longer = expected.iter().filter(|name| !found.is_empty() && name.starts_with(found));
+    longer.next().filter(|_| longer.next().is_none()).copied()
 }
 
 #[cfg(test)]
@@ -47,6 +51,8 @@ mod tests {
     fn a_name_is_suggested_with_the_one_that_adds_its_unit() {
         assert_eq!(suggest("stp", &["end_s", "step", "step_s"]), "did you mean `step` or `step_s`?");
         assert_eq!(suggest("ste_s", &["end_s", "step", "step_s"]), "did you mean `step_s`?");
+        assert_eq!(suggest("c", &["cohesion_pa", "tension_pa"]), "did you mean `cohesion_pa`?");
+        assert_eq!(suggest("c", &["cohesion_pa", "conductivity"]), "choose one of cohesion_pa, conductivity");
         assert_eq!(suggest("x", &["end_s", "step"]), "choose one of end_s, step");
         assert_eq!(suggest("x", &["end_s"]), "there is end_s");
     }

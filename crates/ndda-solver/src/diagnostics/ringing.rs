@@ -31,7 +31,7 @@ use crate::bodies::report::BlockReport;
 /// that is held at one end.
 const END_OF_A_BEAM: f64 = 3.0;
 
-/// Most that the velocity of a block may be wrong while forces of contact are taken at one end of a step, over its largest so far: they damp vibrations or feed them.
+/// Largest error of a block's velocity over its largest so far that is accepted while contact forces are taken at one end of a step, where they damp or feed vibrations.
 const MOST_ONE_SIDED: f64 = 10.0;
 
 /// Factor by which a step reduces the sums of squares of the steps before it: they reach over about 64 steps.

@@ -95,6 +95,11 @@ impl Factor for Rows {
         let n = self.unknowns();
         let [x, r, p, product] = quarters(&mut scratch.numbers, n);
         let size = dot(rhs, rhs).sqrt();
+        if !size.is_finite() {
+            // As by a factorisation: the block of a force that is no number is named where its speeds are.
+            rhs.fill(f64::NAN);
+            return Ok(());
+        }
         x.fill(0.0);
         r.copy_from_slice(rhs);
         let precondition = |(r, d): (&f64, &f64)| r * d;

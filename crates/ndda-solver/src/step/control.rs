@@ -39,9 +39,9 @@ const MOST_TRAVEL: f64 = 0.5;
 /// Steps in a row that half as many parts would have done for, before half as many are tried.
 const RELAX_STEPS: u32 = 4;
 /// A halving that leaves more than this part of an energy error does not help against it: by chance, when a block comes
-/// into contact early or late in a part, or because the error is none of the step.
+/// into contact early or late in a part, or because the step does not cause the error, and a shorter one would not reduce it.
 const HELPS: f64 = 0.7;
-/// Halvings in a row that do not help, before it is none of the step.
+/// Halvings in a row that do not help, after which the step counts as not causing the error.
 const ENOUGH_TRIES: u32 = 3;
 /// Steps that skip the energy criterion after halving failed to reduce the error.
 const COOLDOWN_STEPS: u32 = 100;
@@ -50,11 +50,11 @@ const COOLDOWN_STEPS: u32 = 100;
 const BALANCED_STEPS: u64 = 128;
 /// How far the error of a linear force may fall short of that of any other.
 const NONLINEAR: f64 = 2.0;
-/// How many times the part of the bound that steps lately gained the next ones may gain, as long as the bound does not grow.
+/// A step is expected to gain at most this many times the part of its bound that the steps before it gained.
 const LEARNT: f64 = 3.0;
-/// Growth of the bound with which what was learnt at another one does not count.
+/// What earlier steps gained says nothing about a step whose bound is more than this many times theirs.
 const GROWTH: f64 = 4.0;
-/// Factor by which what was learnt fades each time that the balance is evaluated.
+/// Each time that the balance is evaluated, what is remembered of earlier steps is multiplied by this factor.
 const KEPT: f64 = 0.5;
 
 impl StepState {

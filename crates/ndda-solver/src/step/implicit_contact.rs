@@ -51,14 +51,14 @@ pub(crate) struct Newton {
     /// f.
     force: Vec<Vec3>,
     /// Where f was when δ was found.
-    base: Vec<Vec3>,
+    start: Vec<Vec3>,
     /// δ and K̃ δ.
     change: Vec<Vec3>,
     k_delta: Vec<Vec3>,
     /// f_c − f, and what is left of it.
     residual: Vec<Vec3>,
-    rest: Vec<Vec3>,
-    answer: Vec<Vec3>,
+    left: Vec<Vec3>,
+    preconditioned: Vec<Vec3>,
     direction: Vec<Vec3>,
     direction_lifted: Vec<Vec3>,
     product: Vec<Vec3>,
@@ -78,12 +78,12 @@ impl Newton {
         Self {
             settings,
             force: zeros(),
-            base: zeros(),
+            start: zeros(),
             change: zeros(),
             k_delta: zeros(),
             residual: zeros(),
-            rest: zeros(),
-            answer: zeros(),
+            left: zeros(),
+            preconditioned: zeros(),
             direction: zeros(),
             direction_lifted: zeros(),
             product: zeros(),
@@ -104,7 +104,7 @@ impl Simulation {
         self.keep_bolts();
         newton.iterations = Iterations::default();
         let (mut stride, mut search) = (0.0, None::<Search>);
-        newton.base.copy_from_slice(&self.state.contact_force);
+        newton.start.copy_from_slice(&self.state.contact_force);
         // A rigid block takes torques about x*: the first evaluation takes them where the blocks are, not where an
         // earlier step, or a part of one that was discarded, left x*.
         self.scratch.contact_position.copy_from_slice(&self.state.position);
@@ -120,8 +120,8 @@ impl Simulation {
                 }
                 (evaluated, _) => evaluated?,
             };
-            self.place_answer(newton)?;
-            let misfit2 = self.dot(&newton.residual, &newton.answer);
+            self.precondition(newton)?;
+            let misfit2 = self.dot(&newton.residual, &newton.preconditioned);
             let misfit = if misfit2.is_nan() { f64::NAN } else { misfit2.max(0.0).sqrt() };
             let scale = self.motion_of(&self.scratch.force).max(self.motion_of(&newton.force));
             let scale = scale.max(self.motion_of(self.loads.total()));
@@ -144,19 +144,19 @@ impl Simulation {
                 stride = next;
                 continue;
             }
-            newton.base.copy_from_slice(&newton.force);
+            newton.start.copy_from_slice(&newton.force);
             let longest = self.find_change(newton)?;
             search = Some(Search::new(-self.dot(&newton.residual, &newton.change), longest));
             stride = 1.0;
         }
     }
 
-    /// answer ← K̃⁻¹ (f_c − f): what the misfit moves.
-    fn place_answer(&mut self, newton: &mut Newton) -> Result<(), StepError> {
-        newton.rest.copy_from_slice(&newton.residual);
+    /// preconditioned ← K̃⁻¹ (f_c − f): what the misfit moves.
+    fn precondition(&mut self, newton: &mut Newton) -> Result<(), StepError> {
+        newton.left.copy_from_slice(&newton.residual);
         for (index, touched) in newton.touched.iter_mut().enumerate() {
             let range = self.problem.blocks.nodes_of(BlockId(index as u32));
-            *touched = newton.rest[range].iter().any(|q| *q != Vec3::zeros());
+            *touched = newton.left[range].iter().any(|q| *q != Vec3::zeros());
         }
         self.respond(newton)
     }
@@ -184,10 +184,10 @@ impl Simulation {
             .sqrt()
     }
 
-    /// f ← base + stride · K̃ δ, x* ← x + G(f), force ← f_c there, residual ← f_c − f.
+    /// f ← start + stride · K̃ δ, x* ← x + G(f), force ← f_c there, residual ← f_c − f.
     fn evaluate_at_end(&mut self, newton: &mut Newton, stride: f64) -> Result<ContactReport, StepError> {
-        for ((f, base), k_delta) in newton.force.iter_mut().zip(&newton.base).zip(&newton.k_delta) {
-            *f = base + stride * k_delta;
+        for ((f, start), k_delta) in newton.force.iter_mut().zip(&newton.start).zip(&newton.k_delta) {
+            *f = start + stride * k_delta;
         }
         for ((sum, f), load) in self.scratch.force.iter_mut().zip(&newton.force).zip(self.loads.total()) {
             *sum = f + load;
@@ -209,8 +209,8 @@ impl Simulation {
         Ok(report)
     }
 
-    /// Friction on velocities follows the normal forces, which answer to it, and Newton's matrix does not know how: where that does not end soon, it stays as it is, within the misfit of that
-    /// evaluation, and what is left to find are normal forces.
+    /// Friction on velocities and the normal forces depend on each other, and Newton's matrix leaves this coupling out. After [`FRICTION_EVALUATIONS`] friction
+    /// keeps the value of the last one, within the misfit of which it is known, and only the normal forces are looked for.
     fn hold_friction(&mut self, newton: &mut Newton) {
         if !self.contact.as_ref().is_some_and(|model| model.needs_bodies()) {
             return;
@@ -257,15 +257,15 @@ impl Simulation {
         Ok(())
     }
 
-    /// δ and K̃ δ from the residual in `rest` and what it moves in `answer`, by conjugate gradients with K̃⁻¹ as
+    /// δ and K̃ δ from the residual in `left` and what it moves in `preconditioned`, by conjugate gradients with K̃⁻¹ as
     /// preconditioner; returns how long a stride along it may be.
     fn find_change(&mut self, newton: &mut Newton) -> Result<f64, StepError> {
         self.gather_stiffness(newton)?;
         newton.change.fill(Vec3::zeros());
         newton.k_delta.fill(Vec3::zeros());
-        newton.direction.copy_from_slice(&newton.answer);
-        newton.direction_lifted.copy_from_slice(&newton.rest);
-        let mut size = self.dot(&newton.rest, &newton.answer);
+        newton.direction.copy_from_slice(&newton.preconditioned);
+        newton.direction_lifted.copy_from_slice(&newton.left);
+        let mut size = self.dot(&newton.left, &newton.preconditioned);
         let enough = KRYLOV_REDUCTION2 * size;
         for step in 0..MOST_KRYLOV {
             newton.iterations.krylov += 1;
@@ -282,14 +282,14 @@ impl Simulation {
             let along = size / curvature;
             add(along, &newton.direction, &mut newton.change);
             add(along, &newton.direction_lifted, &mut newton.k_delta);
-            add(-along, &newton.product, &mut newton.rest);
+            add(-along, &newton.product, &mut newton.left);
             self.respond(newton)?;
-            let next = self.dot(&newton.rest, &newton.answer);
+            let next = self.dot(&newton.left, &newton.preconditioned);
             if next <= enough {
                 break;
             }
-            turn(next / size, &newton.answer, &mut newton.direction);
-            turn(next / size, &newton.rest, &mut newton.direction_lifted);
+            turn(next / size, &newton.preconditioned, &mut newton.direction);
+            turn(next / size, &newton.left, &mut newton.direction_lifted);
             size = next;
         }
         Ok(1.0)
@@ -329,15 +329,15 @@ impl Simulation {
         over_blocks(self.problem.blocks.node_starts(), of_nodes)
     }
 
-    /// answer ← K̃⁻¹ rest, block by block.
+    /// preconditioned ← K̃⁻¹ left, block by block.
     fn respond(&mut self, newton: &mut Newton) -> Result<(), StepError> {
         let (blocks, shapes, weights) = (&self.problem.blocks, &self.problem.shapes, &self.weights);
-        let (rest, touched) = (&newton.rest, &newton.touched);
-        let slices = NodeSlices::only_positions(&mut newton.answer);
+        let (left, touched) = (&newton.left, &newton.touched);
+        let slices = NodeSlices::only_positions(&mut newton.preconditioned);
         let respond = |index: usize, body: &mut Body, out: NodeSlices| {
             if touched[index] {
                 let range = blocks.nodes_of(BlockId(index as u32));
-                body.respond(&shapes[body.shape], weights, &rest[range], out.position);
+                body.respond(&shapes[body.shape], weights, &left[range], out.position);
             } else {
                 out.position.fill(Vec3::zeros());
             }

@@ -100,22 +100,7 @@ impl Simulation {
         let newton_nodes = if implicit_contact.is_some() { nodes } else { 0 };
         let contact_nodes = if contact.is_some() || !bolts.is_empty() { nodes } else { 0 };
         let mut simulation = Self {
-            state: State {
-                step: 0,
-                control: StepState::default(),
-                start: Vec::new(),
-                position: blocks.rest_position.clone(),
-                velocity: vec![Vec3::zeros(); nodes],
-                acceleration: vec![Vec3::zeros(); nodes],
-                internal_force: vec![Vec3::zeros(); if weights.stiffness < 1.0 { nodes } else { 0 }],
-                inertia: vec![Inertia::default(); if weights.needs_acceleration { blocks.len() } else { 0 }],
-                contact_force: vec![Vec3::zeros(); newton_nodes],
-                contact_offset: Vec::new(),
-                driving_force: Vec::new(),
-                kept_force: Vec::new(),
-                contact: Default::default(),
-                bolts: BoltMemory::default(),
-            },
+            state: state_at_rest(&blocks, &weights, newton_nodes),
             bodies: Vec::with_capacity(blocks.len()),
             loads: Loads::none(),
             newton: implicit_contact.map(|settings| Box::new(Newton::new(settings, nodes, blocks.len()))),
@@ -135,15 +120,7 @@ impl Simulation {
                 moved: vec![Vec3::zeros(); contact_nodes],
                 ..Scratch::default()
             },
-            audit: Audit {
-                ledger: Ledger::new(Default::default(), BlockDiagnostics::default(), 0.0),
-                step_sums: Default::default(),
-                stages: StageTimes::default(),
-                travel: Travel::new(smallest_height_m),
-                contacts: None,
-                contact_is_known: false,
-                direction_uncertainty: 0.0,
-            },
+            audit: audit_of(smallest_height_m),
             problem: Problem {
                 has_impulses: shapes.iter().any(Prototype::has_impulses),
                 min_friction_coefficient: contact
@@ -167,20 +144,8 @@ impl Simulation {
         }
         simulation.group_congruent(&shape_of);
         simulation.add_loads(&bodies, &gravity_m_s2, gravity_factor);
-        if simulation.contact.is_some() {
-            let kinds = simulation.problem.blocks.ids().map(|block| simulation.shape(block).kind);
-            simulation.problem.affine = kinds.map(BodyKind::is_affine).collect();
-        }
-        if simulation.contact.as_ref().is_some_and(|c| c.needs_bodies()) {
-            let bodies = simulation.problem.blocks.ids().map(|block| simulation.shape(block).contact_body());
-            simulation.scratch.contact_bodies = bodies.collect();
-        }
         simulation.set_bolts(&bolts)?;
-        let acts = simulation.contact.is_some() || simulation.has_bolts();
-        if acts && !simulation.weights.contact_in_the_middle() {
-            let shapes = simulation.problem.blocks.ids().map(|block| simulation.shape(block));
-            simulation.contact_moments = Some(Box::new(ContactMoments::new(shapes)));
-        }
+        simulation.prepare_contact();
         let loads = simulation.loads.total().to_vec();
         simulation.keep_static_reactions(&loads).map_err(Box::new)?;
         simulation.open_ledger()?;
@@ -190,6 +155,23 @@ impl Simulation {
             simulation.audit.travel.notes_touching = true;
         }
         Ok(simulation)
+    }
+
+    /// What contact and bolts need to know of blocks.
+    fn prepare_contact(&mut self) {
+        if self.contact.is_some() {
+            let kinds = self.problem.blocks.ids().map(|block| self.shape(block).kind);
+            self.problem.affine = kinds.map(BodyKind::is_affine).collect();
+        }
+        if self.contact.as_ref().is_some_and(|c| c.needs_bodies()) {
+            let bodies = self.problem.blocks.ids().map(|block| self.shape(block).contact_body());
+            self.scratch.contact_bodies = bodies.collect();
+        }
+        let acts = self.contact.is_some() || self.has_bolts();
+        if acts && !self.weights.contact_in_the_middle() {
+            let shapes = self.problem.blocks.ids().map(|block| self.shape(block));
+            self.contact_moments = Some(Box::new(ContactMoments::new(shapes)));
+        }
     }
 
     /// Runs of congruent neighbours, solved for together.
@@ -330,6 +312,41 @@ impl Simulation {
             }
         }
         (force, torque)
+    }
+}
+
+/// Blocks as they are meshed, at rest and without forces.
+fn state_at_rest(blocks: &BlockSet, weights: &StepWeights, newton_nodes: usize) -> State {
+    let nodes = blocks.rest_position.len();
+    let zeros = |is_needed: bool| vec![Vec3::zeros(); if is_needed { nodes } else { 0 }];
+    State {
+        step: 0,
+        control: StepState::default(),
+        start: Vec::new(),
+        position: blocks.rest_position.clone(),
+        velocity: zeros(true),
+        acceleration: zeros(true),
+        internal_force: zeros(weights.stiffness < 1.0),
+        inertia: vec![Inertia::default(); if weights.needs_acceleration { blocks.len() } else { 0 }],
+        contact_force: vec![Vec3::zeros(); newton_nodes],
+        contact_offset: Vec::new(),
+        driving_force: Vec::new(),
+        kept_force: Vec::new(),
+        contact: Default::default(),
+        bolts: BoltMemory::default(),
+    }
+}
+
+/// Diagnostics before the first step, of blocks whose smallest tetrahedron has this height [m].
+fn audit_of(smallest_height_m: f64) -> Audit {
+    Audit {
+        ledger: Ledger::new(Default::default(), BlockDiagnostics::default(), 0.0),
+        step_sums: Default::default(),
+        stages: StageTimes::default(),
+        travel: Travel::new(smallest_height_m),
+        contacts: None,
+        contact_is_known: false,
+        direction_uncertainty: 0.0,
     }
 }
 

@@ -1,11 +1,11 @@
 //! Rock of a scene as blocks.
 
+mod domain;
 mod joints;
 
 use std::fmt;
 use std::path::Path;
 
-use ndda_io::mesh::terrain_grid::TerrainGrid;
 use ndda_io::scene::{self, Contact, Fill, Potential, Rock, Scene, Slivers, Whereabouts};
 use ndda_mesh::cut::{
     Axis, Blocks, CutOptions, Domain, Merged, VoronoiOptions, cut_blocks, random_seeds, voronoi_blocks,
@@ -18,8 +18,9 @@ use serde::Serialize;
 
 pub use super::bonded::{Bonded, Bonds};
 use super::{Fault, solid, vec3};
-use crate::forecast::{admit, gaps};
+use crate::forecast::admit;
 use crate::numbers::{counted, four_figures};
+use domain::domain;
 use joints::Discs;
 
 /// Most faces of a block that tetrahedra without a node inside fill, where contact is `Smooth`.
@@ -137,78 +138,16 @@ pub(super) fn cut_rock(
         return Err(vec![Fault::new(at(".sliver_width_m"), message)]);
     }
     let cut_field = if rock.voronoi.is_some() { ".voronoi" } else { ".joints" };
-    let mut blocks = cut(rock, &domain, folder).map_err(|m| vec![Fault::new(at(cut_field), m)])?;
-    let refused = blocks.report.refused.iter().map(|(_, count)| count).sum();
-    let (mut merged, slivers) = match rock.slivers {
-        _ if rock.sliver_width_m == 0.0 => (Merged::default(), Vec::new()),
-        Slivers::Merge => {
-            // What stays and what is taken out meet at the faces of the rock, which slivers neither notch nor stand in front of.
-            let is_removed = |at: &Vec3| usize::from(holds(&rock.removed, at));
-            (blocks.merge_slivers_within(&domain, rock.sliver_width_m, &is_removed), Vec::new())
-        }
-        Slivers::Remove => (Merged::default(), slivers(&blocks)),
-    };
-    let sliver_m3 = blocks.remove(&slivers);
-    let removed = chosen(&blocks, &rock.removed);
-    let removed_m3 = blocks.remove(&removed);
-    if let Some(k) =
-        rock.fixed.iter().position(|place| chosen(&blocks, std::slice::from_ref(place)).is_empty())
-    {
-        let message = "holds no block, since no block has its centroid in it: check the signs of its planes, or leave it out; if blocks are larger than this region, enlarge the region or the domain, or reduce the spacing of joints";
-        return Err(vec![Fault::new(at(&format!(".fixed[{k}]")), message)]);
-    }
-    let spaces = excavate(rock, &domain, &mut blocks)
-        .map_err(|(k, message)| vec![Fault::new(at(&format!(".excavations[{k}]")), message)])?;
-    let space_of = |at_m: &Vec3| spaces.iter().position(|space| space.holds(at_m)).unwrap_or(spaces.len());
-    if !spaces.is_empty() && rock.sliver_width_m > 0.0 && rock.slivers == Slivers::Merge {
-        // Borders of excavations make slivers of their own, which stay on their side.
-        let more = blocks.merge_slivers_within(&domain, rock.sliver_width_m, &space_of);
-        merged = Merged { count: merged.count + more.count, volume_m3: merged.volume_m3 + more.volume_m3 };
-    }
-    let thin = blocks.report.slivers.len();
-    let mut report = RockReport {
-        name: rock.name.clone(),
-        blocks: 0,
-        domain_m3: domain.volume_m3(),
-        merged: (merged.count, merged.volume_m3),
-        slivers: (slivers.len(), sliver_m3),
-        thin,
-        removed: (removed.len(), removed_m3),
-        refused,
-        gaps,
-        discs: Discs::new(&blocks.report.discs),
-        bonded: None,
-    };
-    let mut faults = Vec::new();
-    let groups = blocks.groups();
-    let (filling, kept_m3) = (rock.filling(), report.domain_m3 - sliver_m3 - removed_m3);
+    let blocks = cut(rock, &domain, folder).map_err(|m| vec![Fault::new(at(cut_field), m)])?;
+    let carved = Carved::new(rock, &domain, blocks).map_err(|(field, m)| vec![Fault::new(at(&field), m)])?;
+    let mut report = RockReport { gaps, ..carved.report(rock, &domain) };
     let fill_field = if rock.into.is_some() { ".into" } else { ".fill" };
-    admit::admit_fill(groups.len(), &filling, (kept_m3, rock.into.is_some()))
+    let kept_m3 = report.domain_m3 - report.slivers.1 - report.removed.1;
+    admit::admit_fill(carved.blocks.groups().len(), &rock.filling(), (kept_m3, rock.into.is_some()))
         .map_err(|m| vec![Fault::new(at(fill_field), m)])?;
-    let fill_of =
-        |group: &Vec<u32>| solid::filled_group(&blocks, group, fill(scene, &filling, &blocks, group));
-    let filled = groups.chunks(AT_A_TIME).flat_map(|some| some.par_iter().map(fill_of).collect::<Vec<_>>());
-    let mut counts = vec![0; spaces.len() + 1];
-    for (group, filled) in groups.iter().zip(filled) {
-        let space = space_of(&centroid(&blocks, group));
-        let stem = rock.excavations.get(space).map_or(&rock.name, |space| &space.name);
-        let count = &mut counts[space];
-        let mut next = || {
-            *count += 1;
-            format!("{stem}_{count:04}")
-        };
-        match filled {
-            Ok(mesh) if rock.into.is_some() => {
-                taken_apart(&mesh).into_iter().for_each(|piece| take(next(), piece));
-            }
-            Ok(mesh) => take(next(), mesh),
-            Err(error) => faults.push(Fault::new(
-                at(fill_field),
-                format!("block {} cannot be filled: {error}; a larger `sliver_width_m` unites thin ones with neighbours", next()),
-            )),
-        }
-    }
-    if let Some(k) = counts[..spaces.len()].iter().position(|count| *count == 0) {
+    let (counts, refused) = carved.fill(scene, rock, take);
+    let mut faults: Vec<Fault> = refused.into_iter().map(|m| Fault::new(at(fill_field), m)).collect();
+    if let Some(k) = counts[..carved.spaces.len()].iter().position(|count| *count == 0) {
         let message = "holds no rock: check its outline, which is given as (y, z) along X, (x, z) along Y, and (x, y) along Z";
         faults.push(Fault::new(at(&format!(".excavations[{k}]")), message));
     }
@@ -216,7 +155,109 @@ pub(super) fn cut_rock(
     if report.blocks == 0 && faults.is_empty() {
         faults.push(Fault::new(at(".removed"), "no block is left: take out fewer"));
     }
-    if faults.is_empty() { Ok(CutRock { report, blocks }) } else { Err(faults) }
+    if faults.is_empty() { Ok(CutRock { report, blocks: carved.blocks }) } else { Err(faults) }
+}
+
+/// Rock that is cut, without slivers and what is removed, and along the borders of what is to be excavated.
+struct Carved {
+    blocks: Blocks,
+    /// What is to be excavated.
+    spaces: Vec<Domain>,
+    /// Slivers united with their neighbours.
+    merged: Merged,
+    /// Slivers left out, and their volume [m³].
+    slivers: (usize, f64),
+    /// Parts removed, and their volume [m³].
+    removed: (usize, f64),
+    /// Cuts that would have left needles before anything was taken out.
+    refused: usize,
+}
+
+impl Carved {
+    /// Carves blocks; a field of the rock and its fault where that cannot be.
+    fn new(rock: &Rock, domain: &Domain, mut blocks: Blocks) -> Result<Self, (String, String)> {
+        let refused = blocks.report.refused.iter().map(|(_, count)| count).sum();
+        let (mut merged, slivers) = match rock.slivers {
+            _ if rock.sliver_width_m == 0.0 => (Merged::default(), Vec::new()),
+            Slivers::Merge => {
+                // What stays and what is taken out meet at the faces of the rock, which slivers neither notch nor stand in front of.
+                let is_removed = |at: &Vec3| usize::from(holds(&rock.removed, at));
+                (blocks.merge_slivers_within(domain, rock.sliver_width_m, &is_removed), Vec::new())
+            }
+            Slivers::Remove => (Merged::default(), slivers(&blocks)),
+        };
+        let slivers = (slivers.len(), blocks.remove(&slivers));
+        let removed = chosen(&blocks, &rock.removed);
+        let removed = (removed.len(), blocks.remove(&removed));
+        let is_empty = |place: &Whereabouts| chosen(&blocks, std::slice::from_ref(place)).is_empty();
+        if let Some(k) = rock.fixed.iter().position(is_empty) {
+            let message = "holds no block, since no block has its centroid in it: check the signs of its planes, or leave it out; if blocks are larger than this region, enlarge the region or the domain, or reduce the spacing of joints";
+            return Err((format!(".fixed[{k}]"), message.into()));
+        }
+        let spaces = excavate(rock, domain, &mut blocks)
+            .map_err(|(k, message)| (format!(".excavations[{k}]"), message))?;
+        if !spaces.is_empty() && rock.sliver_width_m > 0.0 && rock.slivers == Slivers::Merge {
+            // Borders of excavations make slivers of their own, which stay on their side.
+            let space_of = |at: &Vec3| space_of(&spaces, at);
+            let more = blocks.merge_slivers_within(domain, rock.sliver_width_m, &space_of);
+            merged =
+                Merged { count: merged.count + more.count, volume_m3: merged.volume_m3 + more.volume_m3 };
+        }
+        Ok(Self { blocks, spaces, merged, slivers, removed, refused })
+    }
+
+    /// What there is to say of it before blocks are filled.
+    fn report(&self, rock: &Rock, domain: &Domain) -> RockReport {
+        RockReport {
+            name: rock.name.clone(),
+            blocks: 0,
+            domain_m3: domain.volume_m3(),
+            merged: (self.merged.count, self.merged.volume_m3),
+            slivers: self.slivers,
+            thin: self.blocks.report.slivers.len(),
+            removed: self.removed,
+            refused: self.refused,
+            gaps: None,
+            discs: Discs::new(&self.blocks.report.discs),
+            bonded: None,
+        }
+    }
+
+    /// Fills all blocks and hands out their meshes: how many there are in each space and, last, outside of all, and why some cannot be filled.
+    fn fill(&self, scene: &Scene, rock: &Rock, take: &mut TakeMesh) -> (Vec<usize>, Vec<String>) {
+        let (blocks, filling) = (&self.blocks, rock.filling());
+        let groups = blocks.groups();
+        let fill_of =
+            |group: &Vec<u32>| solid::filled_group(blocks, group, fill(scene, &filling, blocks, group));
+        let filled =
+            groups.chunks(AT_A_TIME).flat_map(|some| some.par_iter().map(fill_of).collect::<Vec<_>>());
+        let (mut counts, mut refused) = (vec![0; self.spaces.len() + 1], Vec::new());
+        for (group, filled) in groups.iter().zip(filled) {
+            let space = space_of(&self.spaces, &centroid(blocks, group));
+            let stem = rock.excavations.get(space).map_or(&rock.name, |space| &space.name);
+            let count = &mut counts[space];
+            let mut next = || {
+                *count += 1;
+                format!("{stem}_{count:04}")
+            };
+            match filled {
+                Ok(mesh) if rock.into.is_some() => {
+                    taken_apart(&mesh).into_iter().for_each(|piece| take(next(), piece));
+                }
+                Ok(mesh) => take(next(), mesh),
+                Err(error) => refused.push(format!(
+                    "block {} cannot be filled: {error}; a larger `sliver_width_m` unites thin ones with neighbours",
+                    next()
+                )),
+            }
+        }
+        (counts, refused)
+    }
+}
+
+/// Number of the space that a place is in; as many as there are where it is in none.
+fn space_of(spaces: &[Domain], at_m: &Vec3) -> usize {
+    spaces.iter().position(|space| space.holds(at_m)).unwrap_or(spaces.len())
 }
 
 /// How a block is filled. A tetrahedron of a fan may be near all faces of its block, which for `Smooth` contact can be too many; one of a star is near few.
@@ -294,75 +335,6 @@ pub(super) fn body(rock: &Rock, blocks: &BlockSet, block: BlockId) -> scene::Bod
     }
     let centroid = moment / volume + blocks.origin_m;
     if holds(&rock.fixed, &centroid) { scene::Body::Fixed } else { rock.body }
-}
-
-/// A domain, and a warning of heights that are missing within its terrain.
-fn domain(domain: &scene::Domain, folder: &Path) -> Result<(Domain, Option<String>), String> {
-    let whole = match domain {
-        scene::Domain::Box { min_m, max_m } => {
-            Domain::cuboid(vec3(*min_m), vec3(*max_m)).map_err(|e| e.to_string())
-        }
-        scene::Domain::Column { outline_m, axis: along, start_m, end_m } => {
-            Domain::extruded(outline_m, axis(*along), *start_m, *end_m).map_err(|e| e.to_string())
-        }
-        scene::Domain::Polyhedron { corners_m, faces } => {
-            solid::domain(&solid::of_corners(corners_m, faces), solid::EXACT)
-        }
-        scene::Domain::File { file, unit_m } => {
-            solid::domain(&solid::of_file(&folder.join(file), *unit_m)?, solid::ROUNDED)
-        }
-        scene::Domain::Terrain { origin_m, step_m, heights_m, base_m } => {
-            let heights_m: Vec<Vec<_>> =
-                heights_m.iter().map(|row| row.iter().copied().map(Some).collect()).collect();
-            terrain(&TerrainGrid { origin_m: *origin_m, step_m: *step_m, heights_m }, *base_m)
-        }
-        scene::Domain::TerrainFile { file, origin_m, base_m } => {
-            let mut grid = TerrainGrid::read(&folder.join(file), None).map_err(|e| e.to_string())?;
-            grid.origin_m = [grid.origin_m[0] - origin_m[0], grid.origin_m[1] - origin_m[1]];
-            return Ok((terrain(&grid, *base_m)?, shaft(&grid)));
-        }
-    };
-    whole.map(|domain| (domain, None))
-}
-
-/// Warning of a shaft that missing heights leave in rock, if any.
-fn shaft(grid: &TerrainGrid) -> Option<String> {
-    let (holes, middle) = grid.holes()?;
-    Some(gaps::told(&holes, middle, "the rock has a shaft there, down to its base"))
-}
-
-/// Two triangles per cell of the grid whose four corners have heights.
-fn terrain(grid: &TerrainGrid, base_m: f64) -> Result<Domain, String> {
-    let TerrainGrid { origin_m, step_m, heights_m } = grid;
-    let columns = heights_m.first().map_or(0, Vec::len);
-    if columns < 2 || heights_m.len() < 2 || heights_m.iter().any(|row| row.len() != columns) {
-        return Err("give at least two rows of heights, all of the same length of at least two".into());
-    }
-    let mut vertices = Vec::new();
-    for (j, row) in heights_m.iter().enumerate() {
-        // No triangle uses a vertex without height.
-        let place = |(i, z): (usize, &Option<f64>)| {
-            let [x, y] = [origin_m[0] + i as f64 * step_m[0], origin_m[1] + j as f64 * step_m[1]];
-            Vec3::new(x, y, z.unwrap_or(base_m))
-        };
-        vertices.extend(row.iter().enumerate().map(place));
-    }
-    let mut triangles = Vec::new();
-    for (j, rows) in heights_m.windows(2).enumerate() {
-        for i in 0..columns - 1 {
-            if rows.iter().any(|row| row[i].is_none() || row[i + 1].is_none()) {
-                continue;
-            }
-            let [a, b] = [j * columns + i, (j + 1) * columns + i].map(|v| v as u32);
-            triangles.extend([[a, a + 1, b + 1], [a, b + 1, b]]);
-        }
-    }
-    if triangles.is_empty() {
-        return Err(
-            "no cell of the grid has a height at all four corners: give a grid with fewer gaps".into()
-        );
-    }
-    Domain::terrain(&vertices, &triangles, base_m).map_err(|e| e.to_string())
 }
 
 fn cut(rock: &Rock, domain: &Domain, folder: &Path) -> Result<Blocks, String> {

@@ -4,6 +4,8 @@ use std::ops::Range;
 
 use ndda_io::table::Table;
 
+use crate::field::split_unit;
+
 /// Energies of a history that are certified [J].
 const ENERGIES: [&str; 9] = [
     "kinetic_j",
@@ -56,15 +58,11 @@ pub struct Quantity {
 impl Quantity {
     /// Its unit; empty where the name of the column says none.
     pub fn unit(&self) -> &'static str {
-        let ending = |suffix: &str| self.name.ends_with(suffix);
         match self.kind {
             Kind::Displacement => "m",
             Kind::Velocity => "m/s",
             Kind::Energy => "J",
-            Kind::Other if ending("_n") => "N",
-            Kind::Other if ending("_kg_m_s") => "kg m/s",
-            Kind::Other if ending("_kg_m2_s") => "kg m²/s",
-            Kind::Other => "",
+            Kind::Other => split_unit(&self.name).1,
         }
     }
 

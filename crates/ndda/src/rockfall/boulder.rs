@@ -11,8 +11,7 @@ use super::draw::{self, Draw, Of};
 const CANDIDATES: usize = 12;
 /// Least distance of the face of a random polyhedron from its middle, over that of the ellipsoid that it is about.
 const NEAREST: f64 = 0.88;
-/// Polyhedra that are tried until one has only corners within this distance of its middle, the ellipsoid being at 1.
-const TRIES: usize = 64;
+/// A random polyhedron has only corners within this distance of its middle, the ellipsoid being at 1.
 const FARTHEST: f64 = 2.0;
 /// Corners nearer to each other than this are one; distances of faces are about 1.
 const SAME: f64 = 1e-6;
@@ -180,10 +179,9 @@ fn icosahedron() -> Surface {
     Surface::between(&planes)
 }
 
-/// A polyhedron whose faces touch the unit ball or come a bit nearer; always a sound one.
+/// A polyhedron whose faces touch the unit ball or come a bit nearer: the first sound one; most tries give one.
 fn random(faces: usize, draw: &Draw) -> Surface {
-    let mut best = None;
-    for part in 1..=TRIES {
+    let drawn = |part| {
         let mut stream = draw.stream(Of::Shape, part);
         let mut normals: Vec<Vec3> = Vec::new();
         while normals.len() < faces {
@@ -193,14 +191,9 @@ fn random(faces: usize, draw: &Draw) -> Surface {
             normals.extend(candidates.iter().min_by(|a, b| nearest(a).total_cmp(&nearest(b))));
         }
         let planes: Vec<Vec3> = normals.iter().map(|n| n / stream.between(NEAREST, 1.0)).collect();
-        let surface = Surface::between(&planes);
-        if surface.is_sound() {
-            best = Some(surface);
-            break;
-        }
-    }
-    // Most tries give a sound one; that all of them fail is as good as impossible.
-    best.unwrap_or_else(|| Surface::between(&cube()))
+        Surface::between(&planes)
+    };
+    (1..).map(drawn).find(Surface::is_sound).expect("tries do not end")
 }
 
 /// Volume and its centre, from tetrahedra between the mean of the corners and fans of the faces.

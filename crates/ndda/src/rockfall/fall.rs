@@ -26,9 +26,9 @@ const STIFFNESS: f64 = 7.2e4;
 const NEAR_PARTS: f64 = 8.0;
 const NEAR_STEPS: f64 = 2.0;
 const FAR_STEPS: f64 = 4.0;
-/// Energy that a step may gain over the largest of the fall; of the largest in its window never more than the second, while a boulder that is slow gains
-/// little that matters to its fall.
+/// Energy that a step may gain, as a part of the largest energy of the whole fall: what a slow boulder gains matters little to its fall.
 const STEP_ENERGY: f64 = 1e-4;
+/// The same as a part of the largest energy in the present window, which a step must not exceed either.
 const MOST_STEP_ENERGY: f64 = 0.02;
 
 /// How a fall ended.

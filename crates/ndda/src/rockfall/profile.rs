@@ -51,15 +51,8 @@ pub fn stations(model: &Model, (line_m, part_m): (&[[f64; 2]], f64), falls: &[Fa
     let count = (length_m(line_m) / part_m + 1e-9).floor() as usize + 1;
     let mut moments: Vec<Vec<Moment>> = vec![Vec::new(); count];
     for fall in falls {
-        let mut is_passed = vec![false; count];
-        for pair in fall.path.windows(2) {
-            let [a, b] = [0, 1].map(|k| chainage_m(line_m, pair[k].map_m()) / part_m);
-            let (low, high) = (a.min(b), a.max(b));
-            for station in low.ceil() as usize..=(high.floor() as usize).min(count - 1) {
-                if !std::mem::replace(&mut is_passed[station], true) && high > low {
-                    moments[station].push(pair[0].towards(&pair[1], (station as f64 - a) / (b - a)));
-                }
-            }
+        for (all, first) in moments.iter_mut().zip(first_passages(line_m, part_m, count, &fall.path)) {
+            all.extend(first);
         }
     }
     let station = |(k, moments): (usize, &Vec<Moment>)| {
@@ -72,4 +65,65 @@ pub fn stations(model: &Model, (line_m, part_m): (&[[f64; 2]], f64), falls: &[Fa
         }
     };
     moments.iter().enumerate().map(station).collect()
+}
+
+/// When a path first passes each of so many stations.
+fn first_passages(line_m: &[[f64; 2]], part_m: f64, count: usize, path: &[Moment]) -> Vec<Option<Moment>> {
+    let mut first = vec![None; count];
+    let end = length_m(line_m) / part_m;
+    for pair in path.windows(2) {
+        let [a, b] = [0, 1].map(|k| chainage_m(line_m, pair[k].map_m()) / part_m);
+        let (low, high) = (a.min(b), a.max(b));
+        // A boulder that moves along no profile, or before it begins, passes no station.
+        if high > low {
+            let passed = first.iter_mut().zip(0u32..).map(|(first, k)| (f64::from(k), first));
+            let passed = passed.skip(low.ceil() as usize).take_while(|(station, _)| *station <= high);
+            for (station, first) in passed {
+                first.get_or_insert_with(|| {
+                    let at = |part: f64| pair[0].towards(&pair[1], part);
+                    let chainage = |part: f64| chainage_m(line_m, at(part).map_m()) / part_m;
+                    at(part_of_way((a, b), (station, end), chainage))
+                });
+            }
+        }
+    }
+    first
+}
+
+/// Part of a straight way from chainage `a` to `b` at which it passes a station. Places before and beyond the profile have the chainage 0 or `end`: there the
+/// way does not grow evenly, and its place is found by bisection.
+fn part_of_way((a, b): (f64, f64), (station, end): (f64, f64), chainage: impl Fn(f64) -> f64) -> f64 {
+    if [a, b].iter().all(|at| 0.0 < *at && *at < end) {
+        return (station - a) / (b - a);
+    }
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..50 {
+        let middle = 0.5 * (low + high);
+        let at = chainage(middle);
+        let is_before = if a == station { at == a } else { (at - station) * (b - a) < 0.0 };
+        *(if is_before { &mut low } else { &mut high }) = middle;
+    }
+    high
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_boulder_that_starts_before_the_profile_passes_its_first_station() {
+        let path: Vec<Moment> = [-3.0, -2.0, -1.0, 0.5, 2.5]
+            .iter()
+            .zip(0..)
+            .map(|(x, k)| Moment { time_s: f64::from(k), at_m: [*x, 0.0, 0.0], ..Moment::default() })
+            .collect();
+        // The way from −1 to 0.5 m takes a second, and that to 2.5 m, of which the profile has half a metre, another.
+        let first = first_passages(&[[0.0, 0.0], [2.0, 0.0]], 1.0, 3, &path);
+        for (moment, time_s) in first.iter().zip([2.0 + 2.0 / 3.0, 3.25, 3.75]) {
+            assert!((moment.expect("it passes").time_s - time_s).abs() < 1e-12, "{moment:?}");
+        }
+        let back: Vec<Moment> = path.iter().rev().copied().collect();
+        let last = first_passages(&[[0.0, 0.0], [2.0, 0.0]], 1.0, 3, &back)[0];
+        assert!((last.expect("it passes").at_m[0]).abs() < 1e-12, "{last:?}");
+    }
 }

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::passage::Moment;
+use crate::sweep::statistics::quantile;
 
 /// Median, 95th percentile and largest of some values.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -20,12 +21,8 @@ impl Spread {
     pub fn of(mut values: Vec<f64>) -> Option<Self> {
         values.sort_by(f64::total_cmp);
         let largest = *values.last()?;
-        let at = |part: f64| {
-            let place = part * (values.len() - 1) as f64;
-            let (low, rest) = (place.floor() as usize, place.fract());
-            values[low] + rest * (values[(low + 1).min(values.len() - 1)] - values[low])
-        };
-        Some(Self { median: at(0.5), percentile_95: at(0.95), largest })
+        let [median, percentile_95] = [0.5, 0.95].map(|part| quantile(&values, part));
+        Some(Self { median, percentile_95, largest })
     }
 }
 

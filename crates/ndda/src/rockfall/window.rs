@@ -19,8 +19,8 @@ const AHEAD_S: f64 = 0.4;
 const MOST_CELLS: f64 = 7.0;
 /// Fewest cells, so that a boulder that turns on the spot does not leave it.
 const LEAST_CELLS: f64 = 2.0;
-/// Cells around a boulder, with fewer of which its window is changed as soon as it does not touch the ground: what contact remembers of the last step
-/// is lost with the window.
+/// A boulder's window is changed when fewer than this many cells lie between the boulder and the edge of the window, but not while the boulder touches
+/// the ground: what contact remembers of the last step is lost with the window.
 pub(super) const FEW_CELLS: f64 = 1.0;
 
 /// Part of μN to which friction of all triangles of the ground together is found: they all act on one boulder, and to find it to more digits takes hundreds

@@ -85,9 +85,11 @@ fn is_border(rock: &Rock, joint: &Discontinuity) -> bool {
     let normal = dip_normal(*dip_deg, *dip_direction_deg);
     let bounds = |place: &Whereabouts| {
         let Whereabouts::Beyond { point_m: other_m, normal: beyond } = place else { return false };
-        let (beyond, from_other) = (Vec3::from(*beyond), Vec3::from(*point_m) - Vec3::from(*other_m));
-        let apart_m = from_other.dot(&normal).abs();
-        beyond.cross(&normal).norm() <= SAME * beyond.norm() && apart_m <= SAME * (1.0 + from_other.norm())
+        let (beyond, point, other) = (Vec3::from(*beyond), Vec3::from(*point_m), Vec3::from(*other_m));
+        let from_other = point - other;
+        let rounding_m = 1e-12 * (point.norm() + other.norm());
+        let is_beside = from_other.dot(&normal).abs() <= SAME * from_other.norm() + rounding_m;
+        beyond.cross(&normal).norm() <= SAME * beyond.norm() && is_beside
     };
     rock.removed.iter().any(bounds) || *dip_deg == 0.0 && rock.fixed.iter().any(bounds)
 }

@@ -13,6 +13,7 @@ use super::case::{Case, fingerprint};
 use super::error::StudyError;
 use super::record::{Cause, Identity, RESULTS, Record, RunOutcome, folder};
 use super::runner::{CaseRun, CaseRunner};
+use super::warned::Warned;
 use crate::judge::words::SECOND_RUN;
 use crate::run::Sensitivity;
 
@@ -63,10 +64,12 @@ impl Launch<'_> {
     /// The first error of any case that is not the case's own.
     pub fn run_all(&self, cases: &[Case]) -> Result<(), StudyError> {
         let (next, failed) = (AtomicUsize::new(0), Mutex::new(None));
+        let warned = Warned::default();
         let work = || {
             loop {
                 let index = next.fetch_add(1, Ordering::Relaxed);
                 let Some(case) = cases.get(index) else { break };
+                warned.note(self.loaded, case);
                 match self.run_case(case) {
                     Ok(said) => {
                         (self.say)(&format!("{} of {}: {}: {said}", index + 1, cases.len(), case.name));
@@ -79,6 +82,7 @@ impl Launch<'_> {
             }
         };
         std::thread::scope(|scope| (0..self.jobs).for_each(|_| drop(scope.spawn(work))));
+        warned.lines(cases.len()).iter().for_each(|line| (self.say)(line));
         failed.into_inner().expect("no thread panics").map_or(Ok(()), Err)
     }
 

@@ -1,6 +1,6 @@
 //! Cases of a sweep: each sample at each point of the grid.
 
-use ndda_io::study::{Axis, LoadedStudy};
+use ndda_io::study::{Axis, LoadedStudy, Sampling};
 
 use super::distribution::{correlated, factor, quantile};
 use super::points::{MOST_DIMENSIONS, points};
@@ -93,9 +93,10 @@ fn samples(loaded: &LoadedStudy) -> Result<Vec<(Role, Vec<f64>)>, StudyError> {
         return Ok(vec![(Role::Point, Vec::new())]);
     }
     let dimensions = if study.sensitivity { 2 * d } else { d };
-    if dimensions > MOST_DIMENSIONS {
+    if dimensions > MOST_DIMENSIONS && study.sampling == Sampling::Sobol {
         return Err(StudyError::Samples(format!(
-            "there are {d} random parameters: at most {MOST_DIMENSIONS}, or half as many with sensitivity"
+            "there are {d} random parameters, and Sobol' points have at most {MOST_DIMENSIONS}, or half as many with sensitivity: \
+             draw them by `sampling: LatinHypercube` (`--sampling lhs`)"
         )));
     }
     let lower = correlation_factor(loaded)?;
@@ -188,8 +189,15 @@ mod tests {
     fn too_many_axes_and_contradictions_are_refused() {
         let many: Vec<String> = (0..11).map(|i| format!("a{i}=Uniform(0, 1)")).collect();
         let many: Vec<&str> = many.iter().map(String::as_str).collect();
-        let refused = cases(&loaded(&many, |study| study.sensitivity = true), &[]).unwrap_err().to_string();
-        assert!(refused.contains("11 random parameters"), "{refused}");
+        let drawn = |sampling| {
+            let change = |study: &mut Study| {
+                (study.sensitivity, study.sampling, study.samples) = (true, sampling, 2);
+            };
+            cases(&loaded(&many, change), &[])
+        };
+        let refused = drawn(Sampling::Sobol).unwrap_err().to_string();
+        assert!(refused.contains("11 random parameters") && refused.contains("--sampling lhs"), "{refused}");
+        assert_eq!(drawn(Sampling::LatinHypercube).unwrap().len(), 2 * (2 + 11));
         let pair =
             |a: &str, b: &str, coefficient| study::Correlation { between: (a.into(), b.into()), coefficient };
         let three = loaded(&["a=Normal(0,1)", "b=Normal(0,1)", "c=Normal(0,1)"], |study| {

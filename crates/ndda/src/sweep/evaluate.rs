@@ -16,6 +16,7 @@ use crate::study::case::{Case, fingerprint};
 use crate::study::error::StudyError;
 use crate::study::record::{Cause, Identity, RESULTS, folder};
 use crate::study::runner::CaseRun;
+use crate::study::warned::Warned;
 
 /// Set in every run of a sample before the study's own values: fields of thousands of runs are of no use.
 const NO_FRAMES: &str = "output.frames=0";
@@ -24,12 +25,13 @@ const NO_FRAMES: &str = "output.frames=0";
 pub struct Evaluator<'a> {
     sweep: &'a Sweep,
     how: &'a How<'a>,
+    warned: Warned,
 }
 
 impl<'a> Evaluator<'a> {
     /// Of a sweep.
     pub fn new(sweep: &'a Sweep, how: &'a How<'a>) -> Self {
-        Self { sweep, how }
+        Self { sweep, how, warned: Warned::default() }
     }
 
     /// The outcomes of all cases, in their order: those that are known, and the others computed.
@@ -55,6 +57,7 @@ impl<'a> Evaluator<'a> {
             }
         };
         std::thread::scope(|scope| (0..self.how.jobs).for_each(|_| drop(scope.spawn(work))));
+        self.warned.lines(cases.len()).iter().for_each(|line| (self.how.say)(line));
         match failed.into_inner().expect("no thread panics") {
             Some(error) => Err(error),
             None => Ok(outcomes.into_inner().expect("no thread panics").into_iter().flatten().collect()),
@@ -66,6 +69,7 @@ impl<'a> Evaluator<'a> {
             return Err(StudyError::Interrupted);
         }
         let case = &self.prepared(case);
+        self.warned.note(&self.sweep.loaded, &case.case);
         let (identity, name) = (self.identity(case), case.case.name.clone());
         if let Some(known) = records.get(&name, &identity) {
             return Ok(known.outcome.clone());

@@ -47,16 +47,18 @@ impl Moments {
         let mean = values.iter().sum::<f64>() / n;
         let squares: f64 = values.iter().map(|v| (v - mean).powi(2)).sum();
         let deviation = if values.len() > 1 { (squares / (n - 1.0)).sqrt() } else { 0.0 };
-        let quantile = |p: f64| {
-            let place = p * (n - 1.0);
-            let below = place.floor() as usize;
-            let above = (below + 1).min(sorted.len() - 1);
-            sorted[below] + (place - below as f64) * (sorted[above] - sorted[below])
-        };
-        let quantiles = [0.05, 0.5, 0.95].map(quantile);
+        let quantiles = [0.05, 0.5, 0.95].map(|part| quantile(&sorted, part));
         let histogram = histogram(&sorted, least, largest);
         Some(Self { count: values.len(), mean, deviation, least, quantiles, largest, histogram })
     }
+}
+
+/// The value that a part of values in rising order, of which there is one at least, does not exceed; linear between them.
+pub(crate) fn quantile(sorted: &[f64], part: f64) -> f64 {
+    let place = part * (sorted.len() - 1) as f64;
+    let below = place.floor() as usize;
+    let above = (below + 1).min(sorted.len() - 1);
+    sorted[below] + (place - below as f64) * (sorted[above] - sorted[below])
 }
 
 /// As many bins as the root of the number of samples.

@@ -49,7 +49,7 @@ fn incident(simulation: &Simulation) -> Vec<Source> {
     let mut known: Vec<(&Motion, (Vec3, Vec3))> = Vec::new();
     for block in simulation.blocks().ids() {
         let quiet = &simulation.shape(block).supports.quiet;
-        for (motion, way) in quiet.waves.iter().zip(&quiet.ways) {
+        for (motion, way) in quiet.waves.iter().zip(&quiet.directions) {
             if !known.iter().any(|known| known.1 == *way && known.0 == motion) {
                 known.push((motion, *way));
             }

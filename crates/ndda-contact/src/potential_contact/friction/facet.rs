@@ -11,7 +11,7 @@ use crate::friction::twist::{Twist, radius2_m2};
 use crate::integration::overlap_pair::{ActiveFacet, FacetMoments, OverlapPair};
 use crate::model::{ContactHistory, ContactInput, FacetMemory, SpringSlip};
 
-/// Friction below this part of what it may be holds like a spring.
+/// A facet sticks while its friction is below this part of its strength.
 pub(crate) const STICKS: f64 = 1.0 - 1e-9;
 
 /// Places on either side at which a facet is looked for first.
@@ -184,16 +184,12 @@ impl FacetScene<'_> {
         let mut slip = self.slip(touch, (hits, sums), &basis, penalty_pa);
         slip.mean_area_m2 = 0.5 * (last_area_m2 + sums.area);
         if broken.is_some() && law.fracture().is_none() {
-            let facet_m2 = triangle_area_vector(corners).norm();
-            let touches = (&sums.weights, sums.area, facet_m2);
+            let touches = (&sums.weights, sums.area, triangle_area_vector(corners).norm());
             let [pressure, area_m2] =
                 bonds_of_facet::left_to_friction(bonds, (self.input.blocks, joints.memory, key), touches);
-            slip.normal_n = penalty_pa * pressure;
-            (slip.area_m2, slip.mean_area_m2) = (area_m2, area_m2);
+            slip = FacetSlip { normal_n: penalty_pa * pressure, area_m2, mean_area_m2: area_m2, ..slip };
         } else if let Some(part) = broken {
-            slip.normal_n *= part;
-            slip.area_m2 *= part;
-            slip.mean_area_m2 *= part;
+            slip = slip.of_part(part);
         }
         if law.dilates() {
             let [last_m, now_m] = law.openings_m(memory.state);
@@ -211,14 +207,9 @@ impl FacetScene<'_> {
             left_n = twist.left_n(force.couple_n_m);
         }
         force.sticks = size_n < STICKS * capacity_n;
-        let shear_n = match dashpot_n {
-            None => memory.shear_n,
-            Some(force_n) => {
-                // Both together bear no more than the law.
-                let trial = [0, 1].map(|i| memory.shear_n[i] + basis[i].dot(force_n));
-                capped(trial, left_n).0
-            }
-        };
+        // With a dashpot, both together bear no more than the law.
+        let beside = |n: &Vec3| capped([0, 1].map(|i| memory.shear_n[i] + basis[i].dot(n)), left_n).0;
+        let shear_n = dashpot_n.map_or(memory.shear_n, beside);
         force.shear = (basis[0] * shear_n[0] + basis[1] * shear_n[1]) / sums.pressure;
         force.shear_slope = 0.5 * law.shear_stiffness_pa_m() * slip.area_m2 / sums.pressure;
         if force.shear_slope > 0.0 {

@@ -21,6 +21,15 @@ pub struct FacetSlip {
     pub stopping_n: [f64; 2],
 }
 
+impl FacetSlip {
+    /// That of a part of the facet.
+    pub(crate) fn of_part(self, part: f64) -> Self {
+        let [normal_n, area_m2, mean_area_m2] =
+            [self.normal_n, self.area_m2, self.mean_area_m2].map(|whole| part * whole);
+        Self { normal_n, area_m2, mean_area_m2, ..self }
+    }
+}
+
 /// History of a facet on its target.
 #[derive(Debug, PartialEq)]
 pub struct ShearMemory<'a> {

@@ -61,23 +61,29 @@ impl SofteningCoulomb {
         Self { tension_pa: [peak_pa, residual_pa], ..self }
     }
 
-    /// That yields in tension: it opens by so much at its tensile strength, and keeps that and its cohesion until then [m].
+    /// Keeps tensile strength and cohesion until it has opened by so much [m].
     #[must_use]
     pub fn that_opens(self, opens_m: f64) -> Self {
         Self { opens_m, ..self }
     }
 
-    /// Part of the way from peak to residual.
+    /// How far strength has fallen: 0 at the peak, 1 where it is residual.
     fn softened(&self, memory: &ShearMemory) -> f64 {
         if memory.broken { 1.0 } else { self.softened_by(memory.state[0]) }
     }
 
-    /// Part of the way from peak to residual after a plastic slip [m].
+    /// How far strength has fallen after a plastic slip [m]; before any slip it is at its peak, also where it falls at once (u_c = 0).
     fn softened_by(&self, slip_m: f64) -> f64 {
-        if slip_m >= self.over_m { 1.0 } else { slip_m / self.over_m }
+        if slip_m <= 0.0 {
+            0.0
+        } else if slip_m >= self.over_m {
+            1.0
+        } else {
+            slip_m / self.over_m
+        }
     }
 
-    /// c/tan φ at a part of the way from peak to residual: beyond that tension no shear is left [Pa].
+    /// c/tan φ where strength has fallen so far: beyond that tension no shear is left [Pa].
     fn apex_pa(&self, softened: f64) -> f64 {
         let between =
             |of: fn(&Strength) -> f64| of(&self.peak) + softened * (of(&self.residual) - of(&self.peak));
@@ -90,6 +96,7 @@ impl SofteningCoulomb {
         let residual_n = self.residual.capacity_n(slip);
         let to_residual_m = (trial_n - residual_n) / spring_n_m;
         let left_m = self.over_m * (1.0 - self.softened(memory));
+        // Residual already, or falls at once.
         if left_m <= 0.0 || to_residual_m >= left_m {
             return to_residual_m;
         }
@@ -144,8 +151,7 @@ impl FrictionLaw for SofteningCoulomb {
 
     fn tension_after_slip_pa(&self, slip_m: f64) -> Option<f64> {
         let [peak_pa, residual_pa] = self.tension_pa;
-        // Before any slip a joint has its peak strength, also where that falls to the residual one at once (over_m = 0).
-        let softened = if slip_m > 0.0 { self.softened_by(slip_m) } else { 0.0 };
+        let softened = self.softened_by(slip_m);
         let strength_pa = peak_pa + softened * (residual_pa - peak_pa);
         (peak_pa > 0.0)
             .then(|| if self.opens_m > 0.0 { strength_pa.min(self.apex_pa(softened)) } else { strength_pa })
@@ -184,6 +190,23 @@ mod tests {
     #[test]
     fn it_keeps_the_contract_of_a_friction_law() {
         check_friction(&SofteningCoulomb::new(2e10, (35.0, 0.0), (20.0, 0.0), 1e-3));
+    }
+
+    #[test]
+    fn a_joint_whose_strength_falls_at_once_bears_its_peak_until_it_slips() {
+        let law = SofteningCoulomb::new(1e9, (35.0, 1e5), (20.0, 0.0), 0.0);
+        let (peak_n, residual_n) = (0.5e5 + 1e6 * 35f64.to_radians().tan(), 1e6 * 20f64.to_radians().tan());
+        let mut state = [0.0];
+        let mut memory = intact(&mut state);
+        let spring_n_m = 0.5 * 1e9;
+        // To nine tenths of its strength, then beyond it.
+        law.advance(&pressed(0.9 * peak_n / spring_n_m), &mut memory);
+        assert!((memory.shear_n[0] / (-0.9 * peak_n) - 1.0).abs() < 1e-12, "{memory:?}");
+        assert_eq!(memory.state[0], 0.0);
+        law.advance(&pressed(0.2 * peak_n / spring_n_m), &mut memory);
+        assert!((memory.shear_n[0] / -residual_n - 1.0).abs() < 1e-12, "{memory:?}");
+        let slipped_m = (1.1 * peak_n - residual_n) / spring_n_m;
+        assert!((memory.state[0] / slipped_m - 1.0).abs() < 1e-12, "{memory:?}");
     }
 
     #[test]

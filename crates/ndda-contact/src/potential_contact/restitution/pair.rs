@@ -285,6 +285,8 @@ impl Pair {
 
 /// One branch of the law of a point: constant + rate · (w₀ + end · Δw) [N].
 struct Branch {
+    /// Which: 0 takes nothing, as the velocity changes its sign in the step; 1 takes all of the push; 2 goes by the velocity at the point of the step that
+    /// counts; 3 by [`MEAN`] times the mean velocity, where that is less.
     number: u64,
     constant_n: f64,
     rate: f64,
@@ -292,18 +294,18 @@ struct Branch {
 }
 
 impl Point {
-    /// The branch for a change Δw of the parting velocity in the step [m/s]: the velocity counts where the decay is that of the continuous law, as far as the mean velocity has
-    /// the same sign, and damping takes no more than the push.
+    /// The branch for a change Δw of the parting velocity in the step [m/s]. The velocity is taken at the point of the step at which the decay is that of the
+    /// continuous law, or as [`MEAN`] times the mean velocity where that is less; where the two have different signs nothing is taken, and never more than the push.
     fn law(&self, change_m_s: f64) -> Branch {
-        let counts = self.parting_m_s + self.end * change_m_s;
+        let in_step = self.parting_m_s + self.end * change_m_s;
         let mean = MEAN * (self.parting_m_s + 0.5 * change_m_s);
         let most_n = (1.0 - LEFT) * self.force_n;
-        let least = if counts.abs() <= mean.abs() { counts } else { mean };
-        if counts * mean <= 0.0 {
+        let least = if in_step.abs() <= mean.abs() { in_step } else { mean };
+        if in_step * mean <= 0.0 {
             Branch { number: 0, constant_n: 0.0, rate: 0.0, end: 0.0 }
         } else if self.rate * least >= most_n {
             Branch { number: 1, constant_n: most_n, rate: 0.0, end: 0.0 }
-        } else if least == counts {
+        } else if least == in_step {
             Branch { number: 2, constant_n: 0.0, rate: self.rate, end: self.end }
         } else {
             Branch {

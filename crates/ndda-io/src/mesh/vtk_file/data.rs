@@ -85,8 +85,8 @@ impl Data {
             self.kinds.push(whole(*kind, 255, "a cell type")? as u8);
         }
         for &node in &connectivity[..last] {
-            let index = (node.fract() == 0.0 && node >= 0.0).then(|| node as usize + first);
-            let index = index.filter(|&index| index < self.points.len());
+            let index = (node.fract() == 0.0 && node >= 0.0).then_some(node as usize);
+            let index = index.and_then(|node| node.checked_add(first)).filter(|&i| i < self.points.len());
             let missing = || FileProblem::NoSuchNode { what: "a cell".into(), node: node as i64 };
             self.nodes.push(index.ok_or_else(missing)? as u32);
         }

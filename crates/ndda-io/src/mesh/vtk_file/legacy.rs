@@ -92,7 +92,12 @@ fn attribute(keyword: &[u8], text: &mut Text, section: Section, data: &mut Data)
         }
         b"SCALARS" => {
             let kind = text.kind_word()?;
-            let components = parse(text.rest_of_line()).unwrap_or(1);
+            // One unless it is said.
+            let rest = text.rest_of_line();
+            let components = match rest.is_empty() {
+                true => 1,
+                false => parse(rest).ok_or_else(|| text.unexpected("the number of components", rest))?,
+            };
             if text.peek() == b"LOOKUP_TABLE" {
                 text.rest_of_line();
             }

@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::path::Path;
 
-use super::{CELLS, Check, TETRAHEDRA};
+use super::{CELLS, Check, TETRAHEDRA, overturned};
 use crate::scene::code::Code;
 use crate::scene::joint_table::DiscRow;
 use crate::scene::{Body, DiscRule, Discontinuity, Domain, Fill, OrientationScatter, Pieces, Rock, Scene};
@@ -287,7 +287,7 @@ impl Check<'_> {
         let [dip_deg, dip_direction_deg] = joint.orientation_deg().unwrap_or_default();
         if !(0.0..=90.0).contains(&dip_deg) {
             let message = format!("{dip_deg}°: must be from 0 to 90");
-            self.error(field("dip_deg"), message, "0 is level, 90 upright");
+            self.error(field("dip_deg"), message, overturned::help(dip_deg, dip_direction_deg));
         }
         if !(-360.0..=360.0).contains(&dip_direction_deg) {
             let message = format!("{dip_direction_deg}°: must be from -360 to 360");

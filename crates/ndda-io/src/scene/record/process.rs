@@ -2,6 +2,7 @@
 
 use std::f64::consts::{PI, SQRT_2};
 
+use super::MOST_ROWS;
 use crate::scene::Baseline;
 
 /// Rows at an even spacing, linear between the given ones, of which there are two at least; the last is at or before the end.
@@ -48,12 +49,22 @@ impl Section {
     }
 }
 
-/// Filters rows at an even spacing between two corner frequencies, forwards and backwards, with quiet before and after them, of 1.5 periods of the low corner
-/// (Boore 2005), so that what the filter spreads beyond the ends comes back.
-pub(super) fn filtered(rows: &mut [(f64, f64)], (low_hz, high_hz): (f64, f64)) {
+/// Periods of the low corner that are quiet before and after a record that is filtered (Boore 2005: 1.5 n, where n = 2).
+const QUIET_PERIODS: f64 = 3.0;
+
+/// Filters rows at an even spacing between two corner frequencies, forwards and backwards, with quiet before and after them, so that what the filter spreads
+/// beyond the ends comes back.
+///
+/// # Errors
+/// The slower corner and the lowest one that is possible [Hz], where the quiet would take more than [`MOST_ROWS`].
+pub(super) fn filtered(rows: &mut [(f64, f64)], (low_hz, high_hz): (f64, f64)) -> Result<(), (f64, f64)> {
     let spacing_s = rows[1].0 - rows[0].0;
     let slowest_hz = if low_hz > 0.0 { low_hz } else { high_hz };
-    let quiet = (3.0 / (slowest_hz * spacing_s)).ceil() as usize;
+    let least_hz = QUIET_PERIODS / (MOST_ROWS as f64 * spacing_s);
+    if slowest_hz < least_hz {
+        return Err((slowest_hz, least_hz));
+    }
+    let quiet = (QUIET_PERIODS / (slowest_hz * spacing_s)).ceil() as usize;
     let mut values = vec![0.0; rows.len() + 2 * quiet];
     values.iter_mut().skip(quiet).zip(&*rows).for_each(|(value, row)| *value = row.1);
     let mut sections = Vec::new();
@@ -68,6 +79,7 @@ pub(super) fn filtered(rows: &mut [(f64, f64)], (low_hz, high_hz): (f64, f64)) {
         section.run(values.iter_mut().rev());
     }
     rows.iter_mut().zip(&values[quiet..]).for_each(|(row, value)| row.1 = *value);
+    Ok(())
 }
 
 /// Takes the baseline of the velocity out; acceleration is linear between rows. Returns c₁ [m/s²] and c₂ [m/s³].
@@ -121,11 +133,21 @@ mod tests {
         for f in [0.5, 1.0, 4.0, 10.0, 20.0] {
             let sine = |i: usize| (2.0 * PI * f * i as f64 * spacing_s).sin();
             let mut rows: Vec<_> = (0..20_001).map(|i| (i as f64 * spacing_s, sine(i))).collect();
-            filtered(&mut rows, (1.0, 10.0));
+            filtered(&mut rows, (1.0, 10.0)).unwrap();
             let kept = 1.0 / (1.0 + (tan(1.0) / tan(f)).powi(4)) / (1.0 + (tan(f) / tan(10.0)).powi(4));
             for (i, row) in rows.iter().enumerate().skip(9_000).take(2_000) {
                 assert!((row.1 - kept * sine(i)).abs() < 1e-6, "{f} Hz: {} {}", row.1, kept * sine(i));
             }
+        }
+    }
+
+    #[test]
+    fn a_corner_too_low_to_be_held_is_refused_with_the_lowest_one() {
+        let mut rows: Vec<_> = (0..100).map(|i| (f64::from(i) * 0.01, 1.0)).collect();
+        for corners in [(1e-9, 25.0), (1e-300, 25.0), (0.0, 1e-12)] {
+            let (slowest_hz, least_hz) = filtered(&mut rows, corners).unwrap_err();
+            assert_eq!(slowest_hz, if corners.0 > 0.0 { corners.0 } else { corners.1 });
+            assert!((least_hz / 3e-5 - 1.0).abs() < 1e-9, "{least_hz}");
         }
     }
 
