@@ -1,7 +1,7 @@
 //! Rock bolts: pull-out, joints that open, bolted blocks on a slope, against closed forms of the bar in its bond.
 
 use ndda_mesh::{BlockId, Vec3};
-use ndda_solver::{BoltStatus, PieceState, Settle, Simulation};
+use ndda_solver::{BoltState, BoltStatus, Settle, Simulation};
 
 use crate::evidence::Answer::{AtMost, Near, Within};
 use crate::evidence::{rounding, row};
@@ -68,7 +68,7 @@ fn bolts_are_pulled_out_as_their_bond_and_steel_let_them() {
             pull_n / 1e-4,
             Within(bar_n_m, 1e-2),
         );
-        assert_eq!((status.state, status.debonded), (PieceState::Elastic, 0.0));
+        assert_eq!((status.state, status.debonded), (BoltState::Elastic, 0.0));
     }
     for (length_m, answer_n) in [(0.5, 59.308e3), (2.0, 69.850e3)] {
         let fails_m = STRENGTH_N_M / BOND_N_M2;
@@ -86,7 +86,7 @@ fn bolts_are_pulled_out_as_their_bond_and_steel_let_them() {
     let (limit_n, after) = pull(2.0, 60e-3, 350e3, "");
     // All of the bond has its strength, whatever the segments: rounding of a sum over fewer than a thousand of them.
     row("bolts", "pull when all of 2 m is debonded [N]", limit_n, Within(350e3, rounding(1000)));
-    assert_eq!((after.debonded, after.state), (1.0, PieceState::Debonded));
+    assert_eq!((after.debonded, after.state), (1.0, BoltState::Debonded));
 }
 
 #[test]
@@ -99,7 +99,7 @@ fn a_long_bolt_yields_where_the_debonded_part_carries_its_strength() {
     let (pull_n, after) = pull(17.7, 1.01 * yields_m, YIELD_N, "");
     // Steel that yields has its strength: rounding of a sum over fewer than a thousand segments.
     row("bolts", "pull beyond it [N]", pull_n, Within(YIELD_N, rounding(1000)));
-    assert!(before.state == PieceState::Debonded && after.state == PieceState::Yielding);
+    assert!(before.state == BoltState::Debonded && after.state == BoltState::Yielding);
     assert!(after.utilisation > 1.0 - 1e-9 && before.utilisation < 1.0);
 }
 
@@ -145,11 +145,11 @@ fn steel_breaks_at_the_same_opening_whatever_its_segments() {
         let mut opening_m = f64::NAN;
         for step in 0..1000 {
             simulation.step().unwrap();
-            if opening_m.is_nan() && status(&simulation).state == PieceState::Broken {
+            if opening_m.is_nan() && status(&simulation).state == BoltState::Broken {
                 opening_m = 1e-5 * f64::from(step);
             }
         }
-        assert_eq!(status(&simulation).state, PieceState::Broken);
+        assert_eq!(status(&simulation).state, BoltState::Broken);
         assert!(simulation.reaction_n(BlockId(1)).z.abs() < 1e-6);
         let sample = simulation.sample().unwrap();
         assert!(sample.bolt_work_j < 0.0 && sample.bolt_j >= 0.0);

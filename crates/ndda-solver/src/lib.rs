@@ -83,7 +83,7 @@ pub use bodies::unknowns::Unknowns;
 pub use bolts::embedding::{Portion, first_rock_m};
 pub use bolts::error::BoltError;
 pub use bolts::memory::BoltMemory;
-pub use bolts::report::{BoltPiece, BoltStatus, PieceState};
+pub use bolts::report::{BoltPiece, BoltState, BoltStatus, PieceState};
 pub use bolts::setup::{BoltSetup, Grout, Plate, Steel};
 pub use bolts::span::Dowel;
 pub use diagnostics::energies::Sample;

@@ -18,7 +18,7 @@ use crate::results::folder::OutputFolder;
 use crate::write_error::WriteError;
 
 /// Changes whenever what is kept changes.
-pub(crate) const FORMAT: u32 = 35;
+pub(crate) const FORMAT: u32 = 36;
 
 const MAGIC: &[u8; 16] = b"NDDA-CHECKPOINT\n";
 const HEADER: usize = 16 + 4 + 8;

@@ -34,7 +34,8 @@ pub struct Bolt {
     /// Resistance to shear at joints. Default: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub dowel: Option<BoltDowel>,
-    /// Tension at the start, jacked against the plate [N]. Default: none.
+    /// Tension with which the bolt is locked, jacked against the plate [N]. What blocks and contact give way under it from then on takes part of it: in a
+    /// cube of 2 m under 500 kN 0.2 % with E = 10 GPa, 1.4 % with 1 GPa. Default: none.
     #[serde(default)]
     pub pretension_n: f64,
     /// Plate that ties the head to the face. Default: none.

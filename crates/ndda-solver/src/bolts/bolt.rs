@@ -166,6 +166,7 @@ impl Bolt {
         memory.start_m.fill(0.0);
         memory.yielded_m.fill(0.0);
         memory.broken.fill(false);
+        *memory.gave_way_m = [0.0; 2];
         self.follow_rock(position, memory.start_m, work);
         memory.start_m.copy_from_slice(&work.rock_m[..self.holders.len()]);
         for (crossing, slip_m) in self.each_crossing().zip(memory.dowel_slip_m.iter_mut()) {
@@ -219,6 +220,7 @@ impl Bolt {
                     let shear_n = self.dowel.map_or([0.0; 2], |dowel| {
                         let (shear_n, more_m, work_j) = dowel.respond(frame.across_m(), *slip_m);
                         *slip_m = [slip_m[0] + more_m[0], slip_m[1] + more_m[1]];
+                        memory.gave_way_m[1] += more_m[0].hypot(more_m[1]);
                         *memory.dissipated_j += work_j;
                         shear_n
                     });
@@ -244,6 +246,9 @@ impl Bolt {
             let offset_m = self.chain(memory, &work.rock_m).offset_m(k, memory.displacement_m);
             let (more_m, work_j) = holder.law.yielding(offset_m);
             memory.slip_m[k] += more_m;
+            if k >= self.grouted() {
+                memory.gave_way_m[0] += more_m.abs();
+            }
             taken_j += work_j;
         }
         for (i, law) in self.steel.iter().enumerate().filter(|(i, _)| !memory.broken[*i]) {

@@ -16,6 +16,8 @@ pub struct BoltMemory {
     broken: Vec<bool>,
     /// Slip of dowels in the frame of their crossing [m].
     dowel_slip_m: Vec<[f64; 2]>,
+    /// How far the plate of each bolt has yielded, and its dowels in all [m].
+    gave_way_m: Vec<[f64; 2]>,
     /// Energy that yielding and breaking has taken from each bolt [J].
     dissipated_j: Vec<f64>,
 }
@@ -39,6 +41,7 @@ pub(crate) struct MemoryOf<'a> {
     pub yielded_m: &'a mut [f64],
     pub broken: &'a mut [bool],
     pub dowel_slip_m: &'a mut [[f64; 2]],
+    pub gave_way_m: &'a mut [f64; 2],
     pub dissipated_j: &'a mut f64,
 }
 
@@ -54,12 +57,13 @@ impl BoltMemory {
             yielded_m: vec![0.0; pieces],
             broken: vec![false; pieces],
             dowel_slip_m: vec![[0.0; 2]; count(|bolt| bolt.crossings)],
+            gave_way_m: vec![[0.0; 2]; bolts.len()],
             dissipated_j: vec![0.0; bolts.len()],
         }
     }
 
     /// Numbers of its values, and what they are of: those of the same bolts agree.
-    pub(crate) fn sizes(&self) -> [(&'static str, usize); 7] {
+    pub(crate) fn sizes(&self) -> [(&'static str, usize); 8] {
         [
             ("bolts", self.dissipated_j.len()),
             ("nodes of bolts", self.displacement_m.len()),
@@ -68,6 +72,7 @@ impl BoltMemory {
             ("pieces of bolts", self.yielded_m.len()),
             ("states of pieces of bolts", self.broken.len()),
             ("crossings of bolts", self.dowel_slip_m.len()),
+            ("plates and dowels of bolts", self.gave_way_m.len()),
         ]
     }
 
@@ -79,6 +84,7 @@ impl BoltMemory {
         self.yielded_m.copy_from_slice(&other.yielded_m);
         self.broken.copy_from_slice(&other.broken);
         self.dowel_slip_m.copy_from_slice(&other.dowel_slip_m);
+        self.gave_way_m.copy_from_slice(&other.gave_way_m);
         self.dissipated_j.copy_from_slice(&other.dissipated_j);
     }
 
@@ -97,7 +103,8 @@ impl BoltMemory {
         let (mut displacement_m, mut slip_m) = (&mut self.displacement_m[..], &mut self.slip_m[..]);
         let (mut yielded_m, mut broken) = (&mut self.yielded_m[..], &mut self.broken[..]);
         let (mut start_m, mut dowel_slip_m) = (&mut self.start_m[..], &mut self.dowel_slip_m[..]);
-        for (index, (bolt, dissipated_j)) in bolts.iter().zip(&mut self.dissipated_j).enumerate() {
+        let totals = self.gave_way_m.iter_mut().zip(&mut self.dissipated_j);
+        for (index, (bolt, (gave_way_m, dissipated_j))) in bolts.iter().zip(totals).enumerate() {
             work(
                 index,
                 MemoryOf {
@@ -107,6 +114,7 @@ impl BoltMemory {
                     yielded_m: take(&mut yielded_m, bolt.nodes - 1),
                     broken: take(&mut broken, bolt.nodes - 1),
                     dowel_slip_m: take(&mut dowel_slip_m, bolt.crossings),
+                    gave_way_m,
                     dissipated_j,
                 },
             );
@@ -133,7 +141,7 @@ mod tests {
             cut(&mut memory);
             memory
         };
-        let parts: [(&str, BoltMemory); 7] = [
+        let parts: [(&str, BoltMemory); 8] = [
             ("bolts", cut(|memory| memory.dissipated_j.clear())),
             ("nodes of bolts", cut(|memory| memory.displacement_m.clear())),
             ("springs of bolts", cut(|memory| memory.slip_m.clear())),
@@ -141,6 +149,7 @@ mod tests {
             ("pieces of bolts", cut(|memory| memory.yielded_m.clear())),
             ("states of pieces of bolts", cut(|memory| memory.broken.clear())),
             ("crossings of bolts", cut(|memory| memory.dowel_slip_m.clear())),
+            ("plates and dowels of bolts", cut(|memory| memory.gave_way_m.clear())),
         ];
         for (what, memory) in parts {
             let differs = memory.sizes().into_iter().zip(whole.sizes()).find(|(cut, whole)| cut != whole);

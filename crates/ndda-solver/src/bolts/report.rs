@@ -55,6 +55,49 @@ pub struct BoltPiece {
     pub state: PieceState,
 }
 
+/// State of a bolt as a whole: the worst that has happened to it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum BoltState {
+    /// Nothing has yielded.
+    #[default]
+    Elastic,
+    /// Grout has slipped.
+    Debonded,
+    /// Its plate has been loaded to its strength and has yielded.
+    PlateYielding,
+    /// A dowel has been loaded to its capacity and has yielded.
+    DowelYielding,
+    /// Steel has yielded.
+    Yielding,
+    /// Steel is broken.
+    Broken,
+}
+
+impl BoltState {
+    /// Name in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Elastic => "elastic",
+            Self::Debonded => "debonded",
+            Self::PlateYielding => "plate yielding",
+            Self::DowelYielding => "dowel yielding",
+            Self::Yielding => "yielding",
+            Self::Broken => "broken",
+        }
+    }
+}
+
+impl From<PieceState> for BoltState {
+    fn from(state: PieceState) -> Self {
+        match state {
+            PieceState::Elastic => Self::Elastic,
+            PieceState::Debonded => Self::Debonded,
+            PieceState::Yielding => Self::Yielding,
+            PieceState::Broken => Self::Broken,
+        }
+    }
+}
+
 /// A bolt as a whole.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct BoltStatus {
@@ -64,8 +107,12 @@ pub struct BoltStatus {
     pub utilisation: f64,
     /// Largest shear force of its dowels [N].
     pub shear_n: f64,
-    /// The worst state of its pieces.
-    pub state: PieceState,
+    /// How far its plate has yielded [m].
+    pub plate_yielded_m: f64,
+    /// How far its dowels have yielded in all [m].
+    pub dowel_yielded_m: f64,
+    /// Its state.
+    pub state: BoltState,
     /// Part of the bonded length whose grout has slipped.
     pub debonded: f64,
     /// Energy taken by slip, yielding and breaks [J].
@@ -130,13 +177,22 @@ impl Bolt {
 
     /// The bolt as a whole.
     pub(crate) fn status(&self, position: &[Vec3], memory: &MemoryOf, pieces: &[BoltPiece]) -> BoltStatus {
-        let mut status = BoltStatus { dissipated_j: *memory.dissipated_j, ..BoltStatus::default() };
+        let [plate_yielded_m, dowel_yielded_m] = *memory.gave_way_m;
+        let plate = if plate_yielded_m > 0.0 { BoltState::PlateYielding } else { BoltState::Elastic };
+        let dowel = if dowel_yielded_m > 0.0 { BoltState::DowelYielding } else { BoltState::Elastic };
+        let mut status = BoltStatus {
+            dissipated_j: *memory.dissipated_j,
+            plate_yielded_m,
+            dowel_yielded_m,
+            state: plate.max(dowel),
+            ..BoltStatus::default()
+        };
         for piece in pieces {
             if piece.axial_n.abs() > status.axial_n.abs() {
                 status.axial_n = piece.axial_n;
             }
             status.utilisation = status.utilisation.max(piece.utilisation);
-            status.state = status.state.max(piece.state);
+            status.state = status.state.max(piece.state.into());
         }
         let (mut slipped, mut all) = (0.0, 0.0);
         for (k, holder) in self.holders[..self.grouted()].iter().enumerate() {

@@ -1,5 +1,7 @@
 //! Why a run is inaccurate, in words: a cure that several reasons have is said once.
 
+use super::words::OR_DAMP;
+
 /// Reasons of which several are cured by a shorter step, and the others.
 struct Grouped<'a> {
     /// By how much the step is to be divided; 0 where no reason says so.
@@ -35,6 +37,7 @@ impl<'a> Grouped<'a> {
 
 /// A reason whose cure is a shorter step, without that cure; and by how much the step is to be divided, if it says so.
 fn step_cure(reason: &str) -> Option<(&str, Option<f64>)> {
+    let reason = reason.strip_suffix(OR_DAMP).unwrap_or(reason);
     let (what, cure) = reason.rsplit_once([';', ':'])?;
     match cure.trim() {
         "reduce step_s" => Some((what, None)),

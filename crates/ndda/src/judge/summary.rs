@@ -243,8 +243,12 @@ fn bolt_ends(simulation: &Simulation) -> Named<BoltEnd> {
     simulation.bolt_statuses(&mut all);
     let end = |(index, status): (usize, BoltStatus)| {
         let name = simulation.bolt(index).map_or_else(String::new, |(name, _)| name.to_string());
-        let BoltStatus { axial_n, utilisation, shear_n, debonded, .. } = status;
-        (name, BoltEnd { axial_n, utilisation, shear_n, state: status.state.name().into(), debonded })
+        let BoltStatus { axial_n, utilisation, shear_n, debonded, plate_yielded_m, dowel_yielded_m, .. } =
+            status;
+        let state = status.state.name().into();
+        let end =
+            BoltEnd { axial_n, utilisation, shear_n, state, plate_yielded_m, dowel_yielded_m, debonded };
+        (name, end)
     };
     all.into_iter().enumerate().filter(|(index, _)| simulation.is_installed(*index)).map(end).collect()
 }

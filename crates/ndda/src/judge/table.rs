@@ -2,11 +2,11 @@
 
 use ndda_solver::shown_time_s;
 
-use super::reasons;
 use super::words::{SECOND_RUN, in_words};
+use super::{bolts, reasons};
 use crate::columns::columns;
 use crate::numbers::{SHORTEST_M, counted, length};
-use crate::summary::{BoltEnd, Course, Judgement, LabelWord, Motion, StageEnd, Summary, Verdict};
+use crate::summary::{Course, Judgement, LabelWord, Motion, StageEnd, Summary, Verdict};
 
 /// Most blocks in a table.
 const MOST_BLOCKS: usize = 1000;
@@ -36,7 +36,7 @@ pub fn ending(summary: &Summary) -> String {
     }
     text.extend(summary.motion.as_ref().map(moved));
     text.extend(summary.settled.iter().map(|settled| format!("{settled}\n")));
-    text.push_str(&bolts(&summary.bolts.0));
+    text.push_str(&bolts::bolts(&summary.bolts.0));
     text.push_str(&error(summary));
     let failed =
         |(_, verdict): &&(String, Verdict)| matches!(verdict.verdict, Judgement::Warn | Judgement::Fail);
@@ -78,32 +78,6 @@ pub fn ending(summary: &Summary) -> String {
     }
     text.push('\n');
     text
-}
-
-/// How bolts fared, in a line; nothing where there are none.
-fn bolts(all: &[(String, BoltEnd)]) -> String {
-    if all.is_empty() {
-        return String::new();
-    }
-    let count = counted(all.len(), "bolt", "bolts");
-    let told = |(state, verb): (&str, &str)| {
-        let found: Vec<_> = all.iter().filter(|(_, end)| end.state == state).collect();
-        let (first, _) = found.first()?;
-        let others = if found.len() > 1 { ", …" } else { "" };
-        Some(format!("{} of {count} {verb} (`{first}`{others})", found.len()))
-    };
-    let states = [("broken", "broke"), ("yielding", "yielded")];
-    let mut told: Vec<_> = states.into_iter().filter_map(told).collect();
-    let slipped: Vec<_> = all.iter().filter(|(_, end)| end.state == "debonded").collect();
-    if let Some((farthest, end)) = slipped.iter().max_by(|a, b| a.1.debonded.total_cmp(&b.1.debonded)) {
-        let (many, most) = (slipped.len(), 100.0 * end.debonded);
-        told.push(format!("{many} of {count} slipped in the grout, over at most {most:.0} % of the bonded length (`{farthest}`)"));
-    }
-    if told.is_empty() {
-        let most = all.iter().map(|(_, end)| end.utilisation).fold(0.0, f64::max);
-        return format!("{count} held, with at most {:.0} % of the yield force\n", 100.0 * most);
-    }
-    format!("{}\n", told.join("; "))
 }
 
 /// Seconds of the second run that shows whether the motion is sensitive, if there was one.
@@ -310,22 +284,6 @@ mod tests {
     use super::*;
     use crate::run::Sensitivity;
     use crate::{Model, Run};
-
-    #[test]
-    fn bolts_that_broke_or_slipped_are_named_and_others_are_counted() {
-        let end = |state: &str, utilisation: f64| BoltEnd {
-            state: state.into(),
-            utilisation,
-            ..BoltEnd::default()
-        };
-        let mut all = vec![("a".to_string(), end("elastic", 0.2)), ("b".to_string(), end("elastic", 0.343))];
-        assert_eq!(bolts(&[]), "");
-        assert_eq!(bolts(&all), "2 bolts held, with at most 34 % of the yield force\n");
-        all.extend([("c".into(), end("broken", 1.1)), ("d".into(), end("broken", 1.0))]);
-        all.push(("e".into(), BoltEnd { debonded: 0.12, ..end("debonded", 0.1) }));
-        let slipped = "1 of 5 bolts slipped in the grout, over at most 12 % of the bonded length (`e`)";
-        assert_eq!(bolts(&all), format!("2 of 5 bolts broke (`c`, …); {slipped}\n"));
-    }
 
     /// A block that hits a floor with a step that is far too long.
     #[test]

@@ -1,5 +1,7 @@
 //! Words for a person in the place of the keys of `summary.json`.
 
+/// A cure beside shorter steps of blocks that vibrate on contacts that are not damped.
+pub(super) const OR_DAMP: &str = ", or damp contact (`restitution: 0.5`)";
 /// The part of a run's computing time that is spent on the second run, which shows whether the motion is sensitive.
 pub const SECOND_RUN: &str = "sensitivity";
 

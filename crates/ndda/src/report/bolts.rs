@@ -128,7 +128,8 @@ fn add(numbers: &mut Vec<f32>, part: &[Placed], origin: &Vec3) {
 /// What bolts carry at the end, those nearest to their limits first.
 pub fn table(summary: &Summary) -> Markup {
     let mut all: Vec<&(String, BoltEnd)> = summary.bolts.0.iter().collect();
-    let rank = |end: &BoltEnd| (end.utilisation, end.axial_n.abs());
+    let gave_way = |end: &BoltEnd| end.plate_yielded_m > 0.0 || end.dowel_yielded_m > 0.0;
+    let rank = |end: &BoltEnd| (end.utilisation.max(f64::from(u8::from(gave_way(end)))), end.axial_n.abs());
     all.sort_by(|(_, a), (_, b)| {
         let ([a, a_n], [b, b_n]) = ([rank(a).0, rank(a).1], [rank(b).0, rank(b).1]);
         b.total_cmp(&a).then(b_n.total_cmp(&a_n))

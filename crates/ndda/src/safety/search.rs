@@ -119,7 +119,7 @@ impl<'a> Search<'a> {
         };
         if strength > 1.0 && start.moved.is_empty() {
             answer.remarks.push(format!(
-                "blocks move as the scene is drawn: it comes to rest with joints {strength} times as strong, and trials begin from there"
+                "settling brought the scene to rest with joints {strength} times as strong, and not as it is drawn: trials begin from there"
             ));
         }
         let (mut known, mut known_mechanism) = (Vec::new(), None);

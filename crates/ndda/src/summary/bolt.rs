@@ -11,8 +11,14 @@ pub struct BoltEnd {
     pub utilisation: f64,
     /// Largest shear force at a joint \[N\].
     pub shear_n: f64,
-    /// Its worst state: elastic, debonded, yielding or broken.
+    /// Its worst state: elastic, debonded, plate yielding, dowel yielding, yielding (its steel) or broken.
     pub state: String,
+    /// How far its plate has yielded \[m\].
+    #[serde(default)]
+    pub plate_yielded_m: f64,
+    /// How far its dowels have yielded in all \[m\].
+    #[serde(default)]
+    pub dowel_yielded_m: f64,
     /// Part of the bonded length whose grout has slipped.
     pub debonded: f64,
 }

@@ -8,6 +8,10 @@ use crate::scene::{FactorRow, Pressure, Water, Wet};
 const LEAST_PA: f64 = 100.0;
 /// Part of a factor by which sums of a few numbers round at most.
 const ROUNDING: f64 = 1e-12;
+/// Tilts of gravity below this are rounding [°].
+const TILTED_DEG: f64 = 0.05;
+/// A seismic coefficient of 0.5 tilts gravity by 27°: where it is tilted further, the model is turned [°].
+const SEISMIC_DEG: f64 = 27.0;
 /// What pressures are in.
 const UNIT: &str = "the unit is pascal: 1 m of water is 9810, 10 kPa is 10e3";
 
@@ -27,6 +31,40 @@ impl Check<'_> {
             self.factor(&format!("{path}.factor"), &water.factor);
             self.sooner_than_weight(&path, water);
         }
+        self.tilted_levels();
+    }
+
+    /// Levels of water that gravity tilts, as that of an earthquake by seismic coefficients does: real water stays level.
+    fn tilted_levels(&mut self) {
+        let scene = self.scene;
+        let is_level = |water: &&Water| matches!(water.pressure, Pressure::Level { .. });
+        let at = |i: usize| format!("water[{i}].pressure");
+        let own = scene.water.iter().position(|water| is_level(&water)).map(at);
+        let tilt_deg = angle_deg(&scene.gravity_m_s2, &[0.0, 0.0, -1.0]);
+        if let Some(path) = own.clone().filter(|_| (TILTED_DEG..SEISMIC_DEG).contains(&tilt_deg)) {
+            self.tilted_level(path, "gravity", tilt_deg);
+        }
+        let mut gravity = scene.gravity_m_s2;
+        let mut has_level = own.is_some();
+        for (i, stage) in scene.stages.iter().enumerate() {
+            if let Some(water) = &stage.water {
+                has_level = water.iter().any(|water| is_level(&water));
+            }
+            if let Some(changed) = stage.gravity_m_s2 {
+                let tilt_deg = angle_deg(&changed, &gravity);
+                if has_level && tilt_deg > TILTED_DEG {
+                    self.tilted_level(format!("stages[{i}].gravity_m_s2"), "the stage", tilt_deg);
+                }
+                gravity = changed;
+            }
+        }
+    }
+
+    fn tilted_level(&mut self, path: String, what: &str, tilt_deg: f64) {
+        let message =
+            format!("{what} tilts the level of water by {tilt_deg:.1}°, since a `Level` lies across gravity");
+        let help = "for an earthquake, which leaves water level, give `Linear(pressure_pa: 0, at_m: (…), gradient_pa_m: (0, 0, -9810))`, zero at the level; leave it so where the model itself is turned";
+        self.warn(Code::Inexact, path, message, help);
     }
 
     /// Water that grows sooner than the weights that hold blocks down.
@@ -125,6 +163,13 @@ impl Check<'_> {
     }
 }
 
+/// Angle between two directions [°]; zero where one of them is none.
+fn angle_deg(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    let dot = |a: &[f64; 3], b: &[f64; 3]| (0..3).map(|i| a[i] * b[i]).sum::<f64>();
+    let cross = [0, 1, 2].map(|i| a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3]);
+    dot(&cross, &cross).sqrt().atan2(dot(a, b)).to_degrees()
+}
+
 /// Whether a factor is above f₁ t/t₁ somewhere before t₁, where it is f₁: linear between its rows, it is so at one of them, or at the start.
 fn is_ahead(rows: &[FactorRow], ramp_s: f64) -> bool {
     let final_factor = factor_at(rows, ramp_s);
@@ -176,6 +221,34 @@ mod tests {
             let found = warned(&format!(", factor: [{rows}]"));
             assert_eq!(found, is_ahead.then_some("grows sooner than gravity"), "{rows}");
         }
+    }
+
+    #[test]
+    fn gravity_that_tilts_a_level_of_water_is_warned_of() {
+        let with = |gravity: &str, pressure: &str, stages: &str| {
+            let water = format!(
+                "water: [(on: Part(block: \"slider\", region: Set(\"z_min\")), pressure: {pressure})], {stages}\n    contact: Potential("
+            );
+            let text = SCENE.replacen("contact: Potential(", &water, 1);
+            let overrides = [format!("gravity_m_s2={gravity}"), "reference=None".into()];
+            match load_text("s.ron", &text, &overrides, None) {
+                Ok(loaded) => {
+                    loaded.warnings.iter().filter(|w| w.message.contains("tilts the level")).count()
+                }
+                Err(errors) => panic!("{errors}"),
+            }
+        };
+        let (level, linear) = (
+            "Level(at_m: (0, 0, 1))",
+            "Linear(pressure_pa: 0, at_m: (0, 0, 1), gradient_pa_m: (0, 0, -9810))",
+        );
+        assert_eq!(with("(-0.98, 0, -9.81)", level, ""), 1);
+        assert_eq!(with("(-0.98, 0, -9.81)", linear, ""), 0);
+        assert_eq!(with("(0, 0, -9.81)", level, ""), 0);
+        assert_eq!(with("(5.6, 0, -8)", level, ""), 0, "a model that is turned");
+        let stage = "stages: [(name: \"quake\", gravity_m_s2: (-0.98, 0, -9.81), then: Run(0.1))],";
+        assert_eq!(with("(0, 0, -9.81)", level, stage), 1);
+        assert_eq!(with("(0, 0, -9.81)", linear, stage), 0);
     }
 
     #[test]

@@ -4,6 +4,7 @@ use ndda_mesh::BlockId;
 use ndda_mesh::geometry::Aabb;
 use ndda_solver::{BodyKind, Simulation, Worst};
 
+use crate::judge::words::OR_DAMP;
 use crate::numbers::two_figures_down;
 use crate::waves;
 
@@ -40,7 +41,7 @@ pub(super) fn creep(simulation: &Simulation) -> [Entry; 2] {
             against_squeezes(simulation, found)
         ),
         false => format!(
-            "because vibrating contact makes its shear springs slip: {}, or remove shear_penalty_pa_m",
+            "because vibrating contact makes its shear springs slip: {}, or remove shear_penalty_pa_m where joints have no cohesion",
             against_creep(simulation.damps_contact(), simulation.began_at_rest())
         ),
     };
@@ -204,9 +205,11 @@ pub(super) fn ringing(simulation: &Simulation) -> Entry {
     let worst = simulation.invariants().ringing;
     let forces =
         if simulation.has_contact() { "its contact forces" } else { "the reactions of its supports" };
+    let is_undamped = simulation.has_contact() && !simulation.damps_contact();
+    let or_damp = if is_undamped { OR_DAMP } else { "" };
     let reason = format!(
         "the velocity of block `{}` may be wrong by {:.1} % of the largest speed, limit {:.0} %, because {forces} \
-         vibrate or jump faster than steps resolve: reduce step_s",
+         vibrate or jump faster than steps resolve: reduce step_s{or_damp}",
         name(simulation, worst),
         100.0 * worst.value,
         100.0 * SPEED
