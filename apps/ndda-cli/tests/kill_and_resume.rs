@@ -102,7 +102,7 @@ fn a_killed_run_goes_on_to_the_same_bytes() {
 
 #[test]
 fn a_run_that_is_killed_in_a_stage_goes_on_in_it_to_the_same_bytes() {
-    killed_and_resumed(&[STAGED], 50);
+    killed_and_resumed(&[STAGED], 20);
 }
 
 #[test]
