@@ -280,3 +280,42 @@ fn slab_that_softens(what: &str, peak_deg: u32, over: &str) {
     // If it bounced as deep as it has sunk, at up to ω d = 4 mm/s, its speed would be off by μ of twice that: 0.5 % over 0.4 s.
     row(what, "acceleration on 35° with a residual angle of 25° [m/s²]", rate_m_s2, Within(exact_m_s2, 5e-3));
 }
+
+/// A plate of 1 × 1 × 0.2 m with a cohesion of 50 kPa rocks on one edge, so that its joint opens but there. However its strength falls, it is residual then: pushed by
+/// 10 kN from 0.3 s on, which the cohesion would hold, it slides with (F − μ m g)/m.
+#[test]
+fn a_joint_that_opened_while_its_block_rocked_has_its_residual_strength() {
+    let (mass_kg, push_n, gravity_m_s2) = (2600.0 * 0.2, 1e4, 9.8);
+    let lift = "(block: \"plate\", at_m: (0, 0.5, 0.2), force_n: (0, 0, 4e3), factor: [(time_s: 0, factor: 0), (time_s: 0.001, factor: 1), (time_s: 0.02, factor: 1), (time_s: 0.021, factor: 0)])";
+    let push = "(block: \"plate\", force_n: (1e4, 0, 0), factor: [(time_s: 0.3, factor: 0), (time_s: 0.301, factor: 1)])";
+    for strength in [
+        "",
+        ", residual: (friction_deg: 30)",
+        ", residual: (friction_deg: 30, over_m: 0.01)",
+        ", tension_pa: 1e3, residual: (friction_deg: 30)",
+    ] {
+        let mut plate = simulation(&format!(
+            "(title: \"rocked\", time: (step_s: 1e-4, end_s: 0.5), gravity_m_s2: (0, 0, -{gravity_m_s2}),
+              materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: 2600)],
+              blocks: [
+                  (name: \"base\", material: \"rock\", body: Fixed, shape: Box(size_m: (3, 3, 1), cells: (1, 1, 1)), at_m: (-1, -1, -1)),
+                  (name: \"plate\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 0.2), cells: (1, 1, 1)), at_m: (0, 0, -2.6e-6)),
+              ],
+              forces: [{lift}, {push}],
+              contact: Potential(penalty_pa: 1e9, potential: Smooth(), restitution: 0.1,
+                  friction: (friction_deg: 30, cohesion_pa: 50e3, shear_penalty_pa_m: 1e9{strength})))"
+        ));
+        let nodes = plate.blocks().nodes_of(BlockId(1));
+        let speed_m_s = |plate: &Simulation| {
+            plate.state().velocity[nodes.clone()].iter().map(|v| v.x).sum::<f64>() / nodes.len() as f64
+        };
+        advance(&mut plate, 3100);
+        let before_m_s = speed_m_s(&plate);
+        advance(&mut plate, 1900);
+        let rate_m_s2 = (speed_m_s(&plate) - before_m_s) / 0.19;
+        let exact_m_s2 = push_n / mass_kg - tan(30.0) * gravity_m_s2;
+        let what = format!("acceleration of a plate that rocked before{strength} [m/s²]");
+        // A vibration of the normal force at 0.1 of itself for the last of its time would make as much of the friction.
+        row("joints that opened", &what, rate_m_s2, Within(exact_m_s2, 0.01));
+    }
+}

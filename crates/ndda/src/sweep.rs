@@ -35,7 +35,7 @@ use crate::study::{make_folder, pinned};
 use cases::SweepCase;
 use condition::Condition;
 use evaluate::Evaluator;
-use quantity::{LABEL, SAFETY};
+use quantity::LABEL;
 use result::Results;
 
 /// Options of the command line; they take precedence over the study file.
@@ -128,7 +128,7 @@ impl Sweep {
             of = defaults(&loaded, &ask.overrides)?;
         }
         // A condition on the factor of safety alone is decided by a trial at its limit.
-        let asked = of.iter().any(|name| name.starts_with(SAFETY)) || loaded.study.sensitivity;
+        let asked = of.iter().any(|name| quantity::is_of_safety(name)) || loaded.study.sensitivity;
         let trial = fails_when.as_ref().and_then(Condition::factor).filter(|_| !asked);
         if trial.is_none() {
             of.extend(fails_when.iter().map(|condition| condition.quantity.clone()));
@@ -173,12 +173,12 @@ impl Sweep {
 
     /// Whether factors of safety are wanted.
     fn wants_safety(&self) -> bool {
-        self.trial.is_some() || self.of.iter().any(|name| name.starts_with(SAFETY))
+        self.trial.is_some() || self.of.iter().any(|name| quantity::is_of_safety(name))
     }
 
     /// Whether runs are wanted: anything but factors of safety needs one.
     fn wants_runs(&self) -> bool {
-        self.of.iter().any(|name| !name.starts_with(SAFETY))
+        self.of.iter().any(|name| !quantity::is_of_safety(name))
     }
 }
 

@@ -87,7 +87,13 @@ impl PotentialContact {
             let rubs = law_of(bond, self, blocks).filter(|law| !law.acts_on_faces());
             if let (true, Some(law), Some(_)) = (is_whole, rubs, self.integrals.place_of(&wanted)) {
                 let shear = stretch.shear_n(holding(bond, before, blocks).unwrap_or(law));
-                bond::hand_over(wanted, (&stretch, &shear), (law, bond.slip_m), input, history);
+                bond::hand_over(
+                    wanted,
+                    (&stretch, &shear),
+                    (law, bond.slip_m, !law.survives_slip()),
+                    input,
+                    history,
+                );
             }
         }
         bonds_of_facet::forget_opened(&mut bonds, blocks, joints.memory);
@@ -164,7 +170,7 @@ impl PotentialContact {
             let left = before.shear_n(law) - Stretch::of(input, bond).shear_n(law);
             let wanted = key(blocks, joints.memory, bond);
             if left != Vec3::zeros() && self.integrals.place_of(&wanted).is_some() {
-                bond::hand_over(wanted, (&before, &left), (law, 0.0), input, history);
+                bond::hand_over(wanted, (&before, &left), (law, 0.0, !law.survives_slip()), input, history);
             }
         }
         bonds_of_facet::forget_opened(&mut bonds, blocks, joints.memory);

@@ -226,7 +226,9 @@ impl Simulation {
     ) -> Result<Option<StepReport>, StepError> {
         let mut report = StepReport::default();
         let extent_m = Aabb::around(settling.from.iter()).diagonal();
-        while settling.settled.steps < ramp.steps || settling.settled.speed_ratio > settle.tolerance {
+        // The last step of a ramp has loads of its middle: one at least has those of its end.
+        let least_steps = ramp.steps + u64::from(ramp.steps > 0);
+        while settling.settled.steps < least_steps || settling.settled.speed_ratio > settle.tolerance {
             let Settled { steps, speed_ratio, .. } = settling.settled;
             let leaves = steps % LOOK == LOOK - 1 && self.farthest(&settling.from)[0].0 > extent_m;
             let stalled = settling.stalls();

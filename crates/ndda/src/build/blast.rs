@@ -79,6 +79,11 @@ fn pressure(blast: &Blast) -> Vec<(f64, f64)> {
     if first.1 != 0.0 && first.0 > 0.0 {
         rows.insert(0, (first.0.next_down(), 0.0));
     }
+    if first.1 != 0.0 && first.0 == 0.0 && last.0 > 0.0 {
+        // A scene that settles does so at t = 0, before it.
+        rows[0].0 = f64::EPSILON * last.0;
+        rows.insert(0, (0.0, 0.0));
+    }
     if last.1 != 0.0 {
         rows.push((last.0.next_up(), 0.0));
     }
@@ -125,5 +130,9 @@ mod tests {
         for (t, p) in [(1.0, 0.0), (2.0, 5.0), (2.5, 4.0), (3.0, 3.0), (3.5, 0.0)] {
             assert_eq!(table.at(t), p, "{t}");
         }
+        // From the start of a run on, before which a scene may settle.
+        let table = Table { rows: pressure(&Blast { start_s: 0.0, ..blast }) };
+        assert_eq!((table.at(0.0), table.at(0.5), table.at(1.5)), (0.0, 4.0, 0.0));
+        assert!((table.between(0.0, 1.0).mean - 4.0).abs() < 1e-14);
     }
 }

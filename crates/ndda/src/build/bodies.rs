@@ -14,7 +14,7 @@ use ndda_solver::{BodyKind, BodySetup, ForceSetup, TractionSetup};
 
 use super::blast::add_blasts;
 use super::bonded;
-use super::forces::shares;
+use super::forces::acts_on;
 use super::quiet::{add_quiet, add_ties};
 use super::regions::{in_region, loaded_triangles, region_nodes};
 use super::water::add_water;
@@ -73,7 +73,7 @@ pub(super) fn bodies(
         }
     }
     for (i, force) in scene.forces.iter().enumerate() {
-        match in_region(blocks, &force.block, |block| shares(blocks, block, force)) {
+        match acts_on(blocks, force) {
             Ok(parts) => {
                 for (block, (node, share)) in
                     parts.iter().flat_map(|(block, s)| s.iter().map(|s| (*block, *s)))

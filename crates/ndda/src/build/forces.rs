@@ -4,6 +4,7 @@ use ndda_io::scene;
 use ndda_mesh::geometry::{Aabb, tet_volume};
 use ndda_mesh::{BlockId, BlockSet, Vec3};
 
+use super::regions::in_region;
 use super::vec3;
 
 /// A point belongs to a tetrahedron if none of its barycentric coordinates is less than minus this.
@@ -11,18 +12,25 @@ const ROUNDING: f64 = 1e-6;
 /// A point is a node if that node's barycentric coordinate is one but for this.
 const NODE: f64 = 1e-9;
 
-/// The nodes that a force acts on, and their shares of it.
-pub(super) fn shares(
-    blocks: &BlockSet,
-    block: BlockId,
-    force: &scene::Force,
-) -> Result<Vec<(u32, f64)>, String> {
-    let Some(at_m) = force.at_m else { return Ok((0..).zip(volume_shares(blocks, block)).collect()) };
+/// Nodes of a block, counted from its first, and their shares of a force.
+type Shares = Vec<(u32, f64)>;
+
+/// The blocks that a force acts on, and its shares on their nodes: through their mass centres, or at a point on those that have it. Where none has it, as beside a
+/// face of facets for a curved one, it is on the nearest node.
+pub(super) fn acts_on(blocks: &BlockSet, force: &scene::Force) -> Result<Vec<(BlockId, Shares)>, String> {
+    let Some(at_m) = force.at_m else {
+        return in_region(blocks, &force.block, |block| {
+            Ok((0..).zip(volume_shares(blocks, block)).collect())
+        });
+    };
     let place = vec3(at_m) - blocks.origin_m;
-    match shares_at(blocks, block, &place) {
-        Some(shares) => Ok(shares),
-        None => Ok(vec![(nearest_node(blocks, block, &place)?, 1.0)]),
-    }
+    let exact = |block| shares_at(blocks, block, &place).ok_or_else(String::new);
+    in_region(blocks, &force.block, exact).or_else(|_| {
+        let near = in_region(blocks, &force.block, |block| nearest_node(blocks, block, &place))?;
+        let distance = |(block, (_, distance_m)): &(BlockId, (u32, f64))| (*distance_m, *block);
+        let nearest = near.into_iter().min_by(|a, b| distance(a).partial_cmp(&distance(b)).expect("numbers"));
+        Ok(nearest.into_iter().map(|(block, (node, _))| (block, vec![(node, 1.0)])).collect())
+    })
 }
 
 /// Corners of the tetrahedron that has a place, and its barycentric coordinates: shares of a force there that have its moment about any point. None where the place
@@ -53,8 +61,8 @@ fn volume_shares(blocks: &BlockSet, block: BlockId) -> Vec<f64> {
     shares
 }
 
-/// The node nearest to a place, which must not be outside of the block's box by more than a tenth of it.
-fn nearest_node(blocks: &BlockSet, block: BlockId, place: &Vec3) -> Result<u32, String> {
+/// The node nearest to a place, and its distance [m]; the place must not be outside of the block's box by more than a tenth of it.
+fn nearest_node(blocks: &BlockSet, block: BlockId, place: &Vec3) -> Result<(u32, f64), String> {
     let nodes = &blocks.rest_position[blocks.nodes_of(block)];
     let bounds = Aabb::around(nodes);
     if !bounds.inflated(0.1 * bounds.diagonal()).touches(&Aabb { min: *place, max: *place }) {
@@ -71,9 +79,10 @@ fn nearest_node(blocks: &BlockSet, block: BlockId, place: &Vec3) -> Result<u32, 
             max.z
         ));
     }
-    let distance = |i: usize| (nodes[i] - place).norm_squared();
-    let nearest = (0..nodes.len()).min_by(|&i, &j| distance(i).total_cmp(&distance(j)));
-    Ok(nearest.ok_or("the block has no nodes")? as u32)
+    let distance_m = |i: usize| (nodes[i] - place).norm();
+    let nearest = (0..nodes.len()).min_by(|&i, &j| distance_m(i).total_cmp(&distance_m(j)));
+    let nearest = nearest.ok_or("the block has no nodes")?;
+    Ok((nearest as u32, distance_m(nearest)))
 }
 
 #[cfg(test)]
@@ -93,5 +102,36 @@ mod tests {
             "{words}"
         );
         assert!(!words.contains("ndda mesh"), "{words}");
+    }
+
+    #[test]
+    fn of_many_blocks_those_that_have_the_point_take_the_force_or_else_the_nearest() {
+        let speeds = |at_m: &str| {
+            let block = |name: &str, x: f64| {
+                format!(
+                    "(name: \"{name}\", material: \"rock\", body: Rigid, at_m: ({x}, 0, 0), shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)))"
+                )
+            };
+            let text = format!(
+                "(title: \"pushed\", time: (step_s: 1e-3, end_s: 1e-3), contact: Off,
+                materials: [(name: \"rock\", density_kg_m3: 1000, young_pa: 20e9, poisson: 0.25)],
+                blocks: [{}, {}], forces: [(block: \"a_*\", at_m: {at_m}, force_n: (0, 0, 1000))])",
+                block("a_1", 0.0),
+                block("a_2", 1.02)
+            );
+            let mut simulation = Model::from_text(&text).unwrap().simulation;
+            simulation.step().unwrap();
+            let speed = |block: u32| {
+                let nodes = simulation.blocks().nodes_of(ndda_mesh::BlockId(block));
+                let v = &simulation.state().velocity[nodes];
+                v.iter().map(|v| v.z).sum::<f64>() / v.len() as f64
+            };
+            [speed(0), speed(1)]
+        };
+        // Within the first, and in the gap between both, nearer to the second.
+        for (at_m, takes) in [("(0.95, 0.5, 0.5)", 0), ("(1.015, 0, 0)", 1)] {
+            let speeds = speeds(at_m);
+            assert!(speeds[takes] > 9e-4 && speeds[1 - takes] == 0.0, "{at_m}: {speeds:?}");
+        }
     }
 }

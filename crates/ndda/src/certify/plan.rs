@@ -1,6 +1,8 @@
 //! The runs of a certificate: the scene with steps that halve, finer meshes, stiffer contact, and a disturbed twin.
 
-use ndda_io::scene::{At, Body, Contact, ContactAt, Fill, Integrator, Monitor, Scene, Shape, Turning};
+use ndda_io::scene::{
+    At, Body, Contact, ContactAt, Fill, Grading, Integrator, Monitor, Scene, Shape, Turning,
+};
 use ndda_mesh::BlockId;
 use ndda_solver::BodyKind;
 use ndda_solver::Simulation;
@@ -207,8 +209,9 @@ pub fn finer(scene: &Scene, times: i32) -> Vec<String> {
             Shape::Polyhedron { fill, .. } | Shape::Surface { fill, .. } => {
                 set.extend(filled(&path, fill, times))
             }
-            Shape::Mesh { size_m: Some(size_m), .. } => {
+            Shape::Mesh { size_m: Some(size_m), finer, .. } => {
                 set.push(format!("{path}.size_m={:e}", size_m * 0.5f64.powi(times)));
+                set.extend(graded(&path, finer, times));
             }
             Shape::Mesh { .. } => {}
         }
@@ -225,12 +228,25 @@ fn refined(cells: u32, times: i32) -> u32 {
     if times < 0 { cells.div_ceil(factor) } else { cells.saturating_mul(factor) }
 }
 
-/// A filling of other size; none for one without a size.
-fn filled(path: &str, fill: &Fill, times: i32) -> Option<String> {
+/// A filling of other size, also where it is finer; nothing for one without a size.
+fn filled(path: &str, fill: &Fill, times: i32) -> Vec<String> {
     match fill {
-        Fill::Size { size_m, .. } => Some(format!("{path}.fill.size_m={:e}", size_m * 0.5f64.powi(times))),
-        _ => None,
+        Fill::Size { size_m, finer } => {
+            let whole = format!("{path}.fill.size_m={:e}", size_m * 0.5f64.powi(times));
+            std::iter::once(whole).chain(graded(&format!("{path}.fill"), finer, times)).collect()
+        }
+        _ => Vec::new(),
     }
+}
+
+/// Edges of length s + g d at a distance d of a place become shorter in all of it where s and g do.
+fn graded(path: &str, finer: &[Grading], times: i32) -> Vec<String> {
+    let part = 0.5f64.powi(times);
+    let set = |(k, grading): (usize, &Grading)| {
+        let (size_m, growth) = (part * grading.size_m, part * grading.growth);
+        [format!("{path}.finer[{k}].size_m={size_m:e}"), format!("{path}.finer[{k}].growth={growth:e}")]
+    };
+    finer.iter().enumerate().flat_map(set).collect()
 }
 
 /// Names of blocks and rocks that deform and whose mesh cannot be made finer by a value of the scene.
@@ -242,13 +258,32 @@ pub fn not_refined(scene: &Scene) -> Vec<String> {
         finer(&scene, 1).is_empty()
     };
     let blocks = scene.blocks.iter().filter(|b| deforms(&b.body) && alone(b)).map(|b| b.name.clone());
-    let rocks = scene.rock.iter().filter(|r| deforms(&r.body) && filled("", &r.fill, 1).is_none());
+    let rocks = scene.rock.iter().filter(|r| deforms(&r.body) && filled("", &r.fill, 1).is_empty());
     blocks.chain(rocks.map(|rock| rock.name.clone())).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_graded_mesh_is_finer_in_all_of_it() {
+        let text = "(title: \"t\", time: (step_s: 1e-4, end_s: 1e-3), contact: Off,
+            materials: [(name: \"rock\", density_kg_m3: 2600, young_pa: 20e9, poisson: 0.25)],
+            blocks: [(name: \"a\", material: \"rock\", shape: Polyhedron(corners_m: [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)],
+                faces: [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]],
+                fill: Size(size_m: 1, finer: [(towards: Point((0, 0, 0)), size_m: 0.3, growth: 0.1)])))])";
+        let scene = ndda_io::read::load_text("t.ron", text, &[], None).unwrap().scene;
+        let fill = "blocks[0].shape.fill";
+        let expected = [
+            format!("{fill}.size_m=5e-1"),
+            format!("{fill}.finer[0].size_m=1.5e-1"),
+            format!("{fill}.finer[0].growth=5e-2"),
+        ];
+        let set = finer(&scene, 1);
+        assert_eq!(set, expected);
+        assert!(ndda_io::read::load_text("t.ron", text, &set, None).is_ok());
+    }
 
     #[test]
     fn rows_divide_the_steps() {

@@ -127,6 +127,13 @@ impl Driver {
         OutsideFile::verify_all(&identity.outside, folder)?;
         let file = identity.file.display().to_string();
         let loaded = read::load_text(&file, &identity.text, &[], Some(folder))?;
+        if !loaded.scene.stages.is_empty() {
+            let path = path.display();
+            let stages = format!(
+                "the scene of {path} has stages, through which a run goes on as a whole: `ndda resume {path}`"
+            );
+            return Err(ResumeError::Unusable(stages).into());
+        }
         let mut model = Model::resuming_with(loaded, folder, choices(parts.as_ref()))?;
         let built = model.simulation.start_snapshot();
         model.simulation.restore(snapshot)?;

@@ -70,9 +70,15 @@ pub fn stations(model: &Model, (line_m, part_m): (&[[f64; 2]], f64), falls: &[Fa
 /// When a path first passes each of so many stations.
 fn first_passages(line_m: &[[f64; 2]], part_m: f64, count: usize, path: &[Moment]) -> Vec<Option<Moment>> {
     let mut first = vec![None; count];
-    let end = length_m(line_m) / part_m;
+    let (length, last) = (length_m(line_m) / part_m, (count - 1) as f64);
+    // Where the last station is at the end, rounding does not put it beyond.
+    let end = if (length - last).abs() < 1e-9 { last } else { length };
+    let chainage = |moment: &Moment| {
+        let at = chainage_m(line_m, moment.map_m()) / part_m;
+        if at >= length { end } else { at }
+    };
     for pair in path.windows(2) {
-        let [a, b] = [0, 1].map(|k| chainage_m(line_m, pair[k].map_m()) / part_m);
+        let [a, b] = [0, 1].map(|k| chainage(&pair[k]));
         let (low, high) = (a.min(b), a.max(b));
         // A boulder that moves along no profile, or before it begins, passes no station.
         if high > low {
@@ -81,8 +87,7 @@ fn first_passages(line_m: &[[f64; 2]], part_m: f64, count: usize, path: &[Moment
             for (station, first) in passed {
                 first.get_or_insert_with(|| {
                     let at = |part: f64| pair[0].towards(&pair[1], part);
-                    let chainage = |part: f64| chainage_m(line_m, at(part).map_m()) / part_m;
-                    at(part_of_way((a, b), (station, end), chainage))
+                    at(part_of_way((a, b), (station, end), |part| chainage(&at(part))))
                 });
             }
         }
@@ -122,6 +127,13 @@ mod tests {
         for (moment, time_s) in first.iter().zip([2.0 + 2.0 / 3.0, 3.25, 3.75]) {
             assert!((moment.expect("it passes").time_s - time_s).abs() < 1e-12, "{moment:?}");
         }
+        // A hundredth of 35 m is no number of the machine, and a hundred of them are less than 35.
+        let far = [
+            Moment { at_m: [30.0, 0.0, 0.0], ..Moment::default() },
+            Moment { at_m: [50.0, 0.0, 0.0], time_s: 1.0, ..Moment::default() },
+        ];
+        let at_end = first_passages(&[[0.0, 0.0], [35.0, 0.0]], 0.01 * 35.0, 101, &far)[100];
+        assert!((at_end.expect("it passes").time_s - 0.25).abs() < 1e-9, "{at_end:?}");
         let back: Vec<Moment> = path.iter().rev().copied().collect();
         let last = first_passages(&[[0.0, 0.0], [2.0, 0.0]], 1.0, 3, &back)[0];
         assert!((last.expect("it passes").at_m[0]).abs() < 1e-12, "{last:?}");

@@ -78,15 +78,16 @@ impl Condition {
         }
     }
 
-    /// Value of the quantity; of a factor of safety of which one end is known, infinitely far beyond it.
+    /// Value of the quantity; of a factor of safety, or an end of its bracket, where one end alone is known, infinitely far beyond that.
     fn value(&self, values: &Values) -> Option<f64> {
-        let exact =
-            |name: &str| values.numbers.iter().find(|(known, _)| known == name).map(|(_, value)| *value);
-        if self.quantity != SAFETY || exact(SAFETY).is_some() {
-            return values.number(&self.quantity);
+        let knows = |name: &str| values.numbers.iter().any(|(known, _)| known == name);
+        let is_of_safety = [SAFETY, SAFETY_LOWER, SAFETY_UPPER].contains(&self.quantity.as_str());
+        match (knows(SAFETY_LOWER), knows(SAFETY_UPPER)) {
+            _ if !is_of_safety || knows(&self.quantity) => values.number(&self.quantity),
+            (true, _) => Some(f64::INFINITY),
+            (false, true) => Some(f64::NEG_INFINITY),
+            (false, false) => None,
         }
-        let lower = exact(SAFETY_LOWER).map(|_| f64::INFINITY);
-        lower.or(exact(SAFETY_UPPER).map(|_| f64::NEG_INFINITY))
     }
 }
 
@@ -115,6 +116,12 @@ mod tests {
         let condition = Condition::parse("safety < 1").unwrap();
         assert_eq!(condition.holds(&trial("safety_lower")), Some(false));
         assert_eq!(condition.holds(&trial("safety_upper")), Some(true));
+        // It stands at every factor that is tried, or at none.
+        assert_eq!(
+            Condition::parse("safety_upper < 1.5").unwrap().holds(&trial("safety_lower")),
+            Some(false)
+        );
+        assert_eq!(Condition::parse("safety_lower < 1.5").unwrap().holds(&trial("safety_upper")), Some(true));
         assert_eq!((condition.factor(), Condition::parse("h < 1").unwrap().factor()), (Some(1.0), None));
         for text in ["safety", "< 1", "safety < x", "safety =< 1", "label < 1", "safety < inf"] {
             let said = Condition::parse(text).unwrap_err().to_string();

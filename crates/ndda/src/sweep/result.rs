@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::Sweep;
 use super::cases::{self, Role};
 use super::condition::Condition;
-use super::quantity::{self, FIXED, LABEL, SAFETY, Values};
+use super::quantity::{self, FIXED, LABEL, SAFETY, SAFETY_LOWER, SAFETY_UPPER, Values};
 use super::record::SweepOutcome;
 use super::statistics::{Index, Moments, Part, indices};
 use crate::study::case::grid;
@@ -68,6 +68,9 @@ pub struct Row {
     /// Whether the condition holds.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fails: Option<bool>,
+    /// Whether its factor of safety is below or above all factors that are tried, so that its value is a bound.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub safety_is_bound: bool,
     #[serde(skip)]
     point: usize,
     #[serde(skip)]
@@ -110,12 +113,14 @@ impl Results {
                 SweepOutcome::Done(values) => (values, None),
                 SweepOutcome::Failed { reason, .. } => (Values::default(), Some(reason)),
             };
-            let number = |name: &String| values.numbers.iter().find(|(known, _)| known == name).map(|v| v.1);
+            let number = |name: &str| values.numbers.iter().find(|(known, _)| known == name).map(|v| v.1);
+            let has_both = number(SAFETY_LOWER).is_some() && number(SAFETY_UPPER).is_some();
             Row {
                 name: case.case.name.clone(),
                 labels: case.case.labels.iter().map(|(_, label)| label.clone()).collect(),
                 reason,
-                values: quantities.iter().map(number).collect(),
+                values: quantities.iter().map(|name| number(name)).collect(),
+                safety_is_bound: number(SAFETY).is_some() && !has_both,
                 fails: sweep.fails_when.as_ref().and_then(|condition| condition.holds(&values)),
                 label: values.label,
                 point: case.point,

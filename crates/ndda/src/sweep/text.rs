@@ -17,6 +17,15 @@ pub fn text(results: &Results) -> String {
     for group in &results.groups {
         samples(&mut text, results, group);
     }
+    let bounds = results.cases.iter().filter(|row| row.safety_is_bound).count();
+    if bounds > 0 {
+        let _ = writeln!(
+            text,
+            "{bounds} of {} factors of safety are bounds, since they are below or above all factors that are tried, and count with these: \
+             `--of safety_lower,safety_upper` tells which",
+            results.cases.len()
+        );
+    }
     let failed = results.cases.iter().filter(|row| row.reason.is_some());
     let mut failed: Vec<_> = failed.collect();
     let more = failed.len().saturating_sub(5);

@@ -65,20 +65,21 @@ pub(crate) fn break_overloaded(
             penalty_of_facet[t] * bonds_of_facet::borne(&bonds, place, facet, &weights)
         });
         let bond = &mut bonds[place];
-        let overload = overload(bond, law, (pressed_n, input), scratch);
+        let found = overload(bond, law, (pressed_n, input), scratch);
         if input.bonds_hold {
-            held += usize::from(overload.is_some() || *bond != before);
+            held += usize::from(found.is_some() || *bond != before);
             *bond = before;
             continue;
         }
-        let Some(overload) = overload else { continue };
-        largest = largest.max(overload);
+        let Some(found) = found else { continue };
+        largest = largest.max(found.overload);
         let slip_m = bond.slip_m;
         let stretch = Stretch::of(input, bond);
         bond.damage = 1.0;
         opened = true;
         if let (Some(law), true) = (law, touch.is_some()) {
-            hand_over(wanted, (&stretch, &stretch.shear_n(law)), (law, slip_m), input, history);
+            let is_broken = found.opens || !law.survives_slip();
+            hand_over(wanted, (&stretch, &stretch.shear_n(law)), (law, slip_m, is_broken), input, history);
         }
     }
     if opened {
@@ -88,11 +89,12 @@ pub(crate) fn break_overloaded(
     (largest, held)
 }
 
-/// Makes shear of a bond, which it carries no longer, a part of the friction that its facet remembers; the law then limits it.
+/// Makes shear of a bond, which it carries no longer, a part of the friction that its facet remembers; the law then limits it, by its residual strength where the joint
+/// is broken.
 pub(crate) fn hand_over(
     (facet, target, element): Key,
     (stretch, shear): (&Stretch, &Vec3),
-    (law, slip_m): (&dyn FrictionLaw, f64),
+    (law, slip_m, is_broken): (&dyn FrictionLaw, f64, bool),
     input: &ContactInput,
     history: &mut ContactHistory,
 ) {
@@ -104,7 +106,7 @@ pub(crate) fn hand_over(
         element,
         shear_n: [shear.dot(&basis[0]), shear.dot(&basis[1])],
         area_m2: 2.0 * stretch.half_area,
-        broken: !law.survives_slip(),
+        broken: is_broken,
     };
     let found = history.find(&(facet, target, element));
     let place = found.unwrap_or_else(|place| place);

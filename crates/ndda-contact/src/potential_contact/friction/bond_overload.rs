@@ -2,28 +2,33 @@
 
 use crate::friction::fracture::Fracture;
 use crate::friction::law::{FacetSlip, FrictionLaw};
-use crate::friction::stretch::{Stretch, frame_of};
+use crate::friction::stretch::{Break, Stretch, frame_of};
 use crate::model::{Bond, ContactInput};
 
-/// Overload of a bond that breaks, over its strength; none where it holds. A bond whose law lets it slip does so first.
+/// How a bond breaks; none where it holds. A bond whose law lets it slip does so first.
 pub(super) fn overload(
     bond: &mut Bond,
     law: Option<&dyn FrictionLaw>,
     (pressed_n, input): (f64, &ContactInput),
     scratch: &mut Vec<f64>,
-) -> Option<f64> {
-    let Some(law) = law else { return Some(0.0) };
+) -> Option<Break> {
+    let Some(law) = law else { return Some(Break::default()) };
     let mut stretch = Stretch::of(input, bond);
-    let tension_pa = match law.tension_after_slip_pa(bond.slip_m) {
-        Some(strength_pa) => {
-            open(bond, &mut stretch, (law, strength_pa), input);
-            let left_pa = slip(bond, &mut stretch, law, (pressed_n, input), scratch);
-            left_pa.inspect(|&left_pa| open(bond, &mut stretch, (law, left_pa), input))
-        }
-        None => Some(law.tension_pa()),
+    let Some(strength_pa) = law.tension_after_slip_pa(bond.slip_m) else {
+        return stretch.overload(law, (pressed_n, law.tension_pa(), bond.slip_m), scratch);
     };
-    let Some(tension_pa) = tension_pa else { return Some(0.0) };
-    stretch.overload(law, (pressed_n, tension_pa, bond.slip_m), scratch)
+    open(bond, &mut stretch, (law, strength_pa), input);
+    let (slipped_m, offset_m) = (bond.slip_m, stretch.offset_m);
+    let Some(left_pa) = slip(bond, &mut stretch, law, (pressed_n, input), scratch) else {
+        let opens = stretch.is_pulled(law, pressed_n);
+        // What slips little by little softens; what held until now breaks at once, and it matters when.
+        stretch.offset_m = offset_m;
+        let at_once = stretch.overload(law, (pressed_n, strength_pa, slipped_m), scratch);
+        let overload = at_once.filter(|_| slipped_m == 0.0).map_or(0.0, |found| found.overload);
+        return Some(Break { overload, opens });
+    };
+    open(bond, &mut stretch, (law, left_pa), input);
+    stretch.overload(law, (pressed_n, left_pa, bond.slip_m), scratch)
 }
 
 /// Damages a bond by how far it is stretched. Gives its overload where it breaks at once.

@@ -11,6 +11,15 @@ use crate::model::{Bond, ContactInput};
 /// Offsets below this part of the coordinates are rounding.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
+/// How a bond breaks.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Break {
+    /// By how much its strength is exceeded, over that under the present normal stress or without any, whichever is more.
+    pub(crate) overload: f64,
+    /// Whether the joint opens there, so that it is broken: in shear alone it may keep a part of its strength.
+    pub(crate) opens: bool,
+}
+
 /// How a bond is deformed.
 pub(crate) struct Stretch {
     /// The bonded point of the facet [m].
@@ -95,15 +104,14 @@ impl Stretch {
         ShearMemory { broken: false, state, ..ShearMemory::default() }
     }
 
-    /// By how much the joint's strength is exceeded, over its strength under the present normal stress or without any, whichever is more; none while it holds:
-    /// k_b δ ≤ σ_t and |k_s s| ≤ max(0, c + σ tan φ), to rounding. It is 0 where neither cohesion nor tensile strength is left: friction, which is all that there is,
+    /// How the joint's strength is exceeded; none while it holds: k_b δ ≤ σ_t and |k_s s| ≤ max(0, c + σ tan φ), to rounding. The overload is 0 where neither cohesion nor tensile strength is left: friction, which is all that there is,
     /// goes on unchanged when such a bond breaks, so that it does not matter when.
     pub(crate) fn overload(
         &self,
         law: &dyn FrictionLaw,
         (pressed_n, tension_pa, slip_m): (f64, f64, f64),
         state: &mut Vec<f64>,
-    ) -> Option<f64> {
+    ) -> Option<Break> {
         let whole = self.memory((law, slip_m), state);
         let capacity_n = |normal_n: f64| {
             let slip = FacetSlip { normal_n, area_m2: 2.0 * self.half_area, ..FacetSlip::default() };
@@ -115,16 +123,24 @@ impl Stretch {
         let tensile_n = (tensile_pa - tension_pa) * self.half_area;
         let excess_n = tensile_n.max(self.shear_n(law).norm() - present_n - rounding_n);
         let without_friction_n = capacity_n(0.0).max(tension_pa * self.half_area);
-        let part =
-            || if without_friction_n > 0.0 { excess_n / present_n.max(without_friction_n) } else { 0.0 };
-        (excess_n > 0.0).then(part)
+        let overload = || {
+            if without_friction_n > 0.0 { excess_n / present_n.max(without_friction_n) } else { 0.0 }
+        };
+        // Friction alone has nothing to lose where contact still presses.
+        let opens = tensile_n > 0.0 && (without_friction_n > 0.0 || self.is_pulled(law, pressed_n));
+        (excess_n > 0.0).then(|| Break { overload: overload(), opens })
+    }
+
+    /// Whether it pulls by more than contact presses, by more than rounding: it was pressed where it formed, and gives way before it is open.
+    pub(crate) fn is_pulled(&self, law: &dyn FrictionLaw, pressed_n: f64) -> bool {
+        self.opening_m > self.rounding_m && self.tension_n(law) > pressed_n
     }
 }
 
-/// Sets the plastic slip of a bond [m] in the numbers of a law that softens by it; other laws have no such number.
+/// Makes the plastic slip of a law that softens by it at least that of a bond [m]; other laws have no such number.
 pub(crate) fn set_slip(law: &dyn FrictionLaw, state: &mut [f64], slip_m: f64) {
     if let (true, Some(first)) = (slip_m > 0.0 && law.survives_slip(), state.first_mut()) {
-        *first = slip_m;
+        *first = first.max(slip_m);
     }
 }
 

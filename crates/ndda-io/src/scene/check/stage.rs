@@ -3,7 +3,9 @@
 use std::path::Path;
 
 use super::{Check, Code, MOST_STEPS, problems};
-use crate::scene::{By, Contact, Integrator, Scene, SettleDamping, Stage, Support, Then, is_unset, matches};
+use crate::scene::{
+    By, Contact, Integrator, Ramp, Scene, SettleDamping, Stage, Support, Then, is_unset, matches,
+};
 
 impl Check<'_> {
     pub(super) fn stages(&mut self, folder: Option<&Path>) {
@@ -125,7 +127,17 @@ impl Check<'_> {
                     self.error(path("then"), message, "at most 1e9 steps are taken: make the stage shorter");
                 }
             }
-            Then::Settle { tolerance, most_steps, damping, .. } => {
+            Then::Settle { tolerance, most_steps, damping, ramp } => {
+                let supports = stage.supports.as_ref().unwrap_or(&self.scene.supports);
+                let moved = supports.iter().find(|support| support.hold.is_moved());
+                if let (Some(support), Ramp::Damped, true) = (moved, ramp, stage.over_s > 0.0) {
+                    let message = format!(
+                        "a damped ramp takes `{}`, which a support moves, to its new place without its velocity, so that what lies on it is left behind",
+                        support.block
+                    );
+                    let help = "write `ramp: Dynamic`, or leave over_s out";
+                    self.misfit(path("then.ramp"), message, help);
+                }
                 if !(0.0 < tolerance && tolerance < 1.0) {
                     let message = format!("{tolerance}: must be between 0 and 1");
                     self.error(
@@ -174,5 +186,32 @@ impl Check<'_> {
             let help = "hold nodes where they are (Fixed, Normal, Direction), or give it in the scene's own `supports`";
             self.misfit(path, message, help);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::read::load_text;
+
+    #[test]
+    fn a_damped_ramp_is_refused_where_a_support_moves_in_it() {
+        let refused = |ramp: &str, over_s: &str| {
+            let text = format!(
+                "(title: \"t\", time: (step_s: 1e-4, end_s: 0.1), gravity_m_s2: (0, 0, -9.81),
+                materials: [(name: \"rock\", density_kg_m3: 2700, young_pa: 2e10, poisson: 0.2)],
+                blocks: [
+                    (name: \"base\", material: \"rock\", body: Fixed, at_m: (0, 0, -1), shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1))),
+                    (name: \"a\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1))),
+                ],
+                supports: [(block: \"base\", on: All, hold: Motion([(time_s: 0, displacement_m: (0, 0, 0)), (time_s: 2, displacement_m: (0.02, 0, 0))]))],
+                contact: Potential(penalty_pa: 1e9, friction: (friction_deg: 30)),
+                stages: [(name: \"move\"{over_s}, then: Settle({ramp}))])"
+            );
+            load_text("s.ron", &text, &[], None).err().map(|errors| errors.to_string())
+        };
+        let message = refused("ramp: Damped", ", over_s: 1").expect("an error");
+        assert!(message.contains("without its velocity") && message.contains("ramp: Dynamic"), "{message}");
+        assert_eq!(refused("ramp: Damped", ""), None);
+        assert_eq!(refused("ramp: Dynamic", ", over_s: 1"), None);
     }
 }
