@@ -116,6 +116,13 @@ def test_the_checkpoint_of_a_run_in_a_folder_goes_on(tmp_path: pathlib.Path) -> 
     assert ndda.resume(tmp_path / "out").state_crc32 == summary["state_crc32"]
 
 
+def test_a_run_with_stages_is_resumed_as_a_whole(tmp_path: pathlib.Path) -> None:
+    staged = ndda.EXAMPLE.replace("contact: Off", 'contact: Off, stages: [(name: "later", then: Run(0.5))]')
+    ndda.run(ndda.parse(staged), tmp_path / "out")
+    with pytest.raises(ValueError, match="has stages, through which a run goes on as a whole: `ndda resume"):
+        ndda.resume(tmp_path / "out")
+
+
 def test_files_that_hold_something_else_are_refused(tmp_path: pathlib.Path) -> None:
     with pytest.raises(ValueError, match="holds no saved simulation"):
         ndda.resume(tmp_path / "nothing")
