@@ -106,7 +106,7 @@ fn speed_m_s(support: &Support) -> f64 {
 }
 
 /// What a scene has from its start, and what its stages bring, with their names.
-fn all<'a, T>(
+pub(super) fn all<'a, T>(
     scene: &'a Scene,
     first: &'a [T],
     of_stage: impl Fn(&'a Stage) -> Option<&'a Vec<T>> + 'a,

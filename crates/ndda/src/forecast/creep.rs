@@ -37,7 +37,9 @@ struct Springs {
 
 /// The first law of a scene whose friction acts on springs.
 fn springs(scene: &Scene) -> Option<Springs> {
-    let Some(Contact::Potential { friction, rock_joints, .. }) = &scene.contact else { return None };
+    let Some(Contact::Potential { friction, rock_joints, material_pairs, .. }) = &scene.contact else {
+        return None;
+    };
     let of = |(path, friction): (String, &Friction)| {
         let is_spring = friction.shear_penalty_pa_m.is_some() && friction.friction_deg > 0.0;
         let holds_together = friction.cohesion_pa > 0.0 || friction.tension_pa > 0.0;
@@ -48,5 +50,8 @@ fn springs(scene: &Scene) -> Option<Springs> {
         .iter()
         .enumerate()
         .filter_map(|(i, law)| Some((format!("contact.rock_joints[{i}].friction"), law.friction.as_ref()?)));
-    all.chain(joints).find_map(of)
+    let pairs = material_pairs.iter().enumerate().filter_map(|(i, law)| {
+        Some((format!("contact.material_pairs[{i}].friction"), law.friction.as_ref()?))
+    });
+    all.chain(joints).chain(pairs).find_map(of)
 }

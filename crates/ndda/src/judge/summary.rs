@@ -11,6 +11,7 @@ use crate::judge::reference;
 use crate::judge::verdict;
 use crate::lean;
 use crate::machine;
+use crate::numbers::two_figures_down;
 use crate::rocking::{self, Rocking};
 use crate::run::motion::moved_while_settling;
 use crate::run::recorder::Recorder;
@@ -173,9 +174,9 @@ fn advice(simulation: &Simulation, scene: &Scene) -> Vec<String> {
     if let Some(bound) = simulation.contact_bound()
         && worst.max_h > bound
     {
-        let step_s = simulation.step_s() * bound / worst.max_h;
+        let step_s = two_figures_down(simulation.step_s() * bound / worst.max_h);
         advice.push(format!(
-            "the contact stability number reached {:.2}, limit {bound}: contact may be unstable; step_s = {step_s:.1e} would be safe",
+            "the contact stability number reached {:.2}, limit {bound}: contact may be unstable; step_s = {step_s} would be safe",
             worst.max_h
         ));
     }

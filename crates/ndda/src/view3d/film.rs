@@ -159,9 +159,14 @@ pub fn moving(surface: &Surface, start: &[Vec3], moments: &[Moment]) -> Vec<bool
 pub fn moved(surface: &Surface, start: &[Vec3], moment: &Moment) -> usize {
     let count = surface.block_count();
     let (mut volume, mut moments) = (vec![0.0; count], vec![Vec3::zeros(); count]);
+    // A node of each block, from which it is small: in coordinates of a map the products of places leave no digits.
+    let mut from = vec![Vec3::zeros(); count];
     for (corners, &block) in surface.triangles.iter().zip(&surface.blocks) {
-        // Signed tetrahedra from the origin; a factor of six in both cancels.
-        let [a, b, c] = corners.map(|n| start[n as usize]);
+        from[block as usize] = start[corners[0] as usize];
+    }
+    for (corners, &block) in surface.triangles.iter().zip(&surface.blocks) {
+        // Signed tetrahedra from there; a factor of six in both cancels.
+        let [a, b, c] = corners.map(|n| start[n as usize] - from[block as usize]);
         let six = a.dot(&b.cross(&c));
         volume[block as usize] += six;
         moments[block as usize] += six * (a + b + c) / 4.0;
@@ -171,7 +176,8 @@ pub fn moved(surface: &Surface, start: &[Vec3], moment: &Moment) -> usize {
         let block = block as usize;
         for &node in corners {
             let (now, then) = (moment.positions[node as usize], start[node as usize]);
-            radius[block] = f64::max(radius[block], (then - moments[block] / volume[block]).norm());
+            let arm = then - from[block] - moments[block] / volume[block];
+            radius[block] = f64::max(radius[block], arm.norm());
             gone[block] = f64::max(gone[block], (now - then).norm());
         }
     }
@@ -231,6 +237,13 @@ mod tests {
             ([99.0, 0.0, 0.0], [1.0; 3], [50.0, 0.0, 0.0]),
         ]);
         assert_eq!(moved(&film.surface, &film.start, &film.moments[0]), 2);
+        // In the coordinates of a map.
+        let [x, y, z] = [452_317.3, 5_213_841.7, 812.4];
+        let far = boxes(&[
+            ([x, y, z], [1.0; 3], [0.0, 0.0, 0.0088]),
+            ([x + 2.0, y, z], [1.0; 3], [0.0, 0.0, 0.0085]),
+        ]);
+        assert_eq!(moved(&far.surface, &far.start, &far.moments[0]), 1);
     }
 
     #[test]
