@@ -3,27 +3,12 @@
 use ndda_fem::stress::von_mises_pa;
 use ndda_io::results::{Array, FieldFrame};
 
+use crate::numbers::split_unit;
 use crate::run::fields::PRESENT;
 use crate::surface::{BLOCK_ID, Surface};
 
 /// Arrays that the page shows otherwise: displacement is known from where blocks are.
 const SHOWN_OTHERWISE: [&str; 3] = [BLOCK_ID, PRESENT, "displacement_m"];
-/// Endings of names, and units; the longer ones before those that they end in.
-const UNITS: [(&str, &str); 13] = [
-    ("_kg_m2_s", "kg m²/s"),
-    ("_kg_m_s", "kg m/s"),
-    ("_m_s2", "m/s²"),
-    ("_m_s", "m/s"),
-    ("_j_m3", "J/m³"),
-    ("_rad_s", "rad/s"),
-    ("_deg", "°"),
-    ("_kg", "kg"),
-    ("_pa", "Pa"),
-    ("_j", "J"),
-    ("_n", "N"),
-    ("_m", "m"),
-    ("_s", "s"),
-];
 
 /// Entities that a field has one value for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -84,12 +69,6 @@ fn label(name: &str, measure: Measure) -> (String, &'static str) {
         (_, Measure::VonMises) | ("von_mises", _) => ("von Mises stress".into(), unit),
         _ => (words.replace('_', " "), unit),
     }
-}
-
-/// A name without the unit at its end, and the unit; empty where the name says none.
-pub fn split_unit(name: &str) -> (&str, &'static str) {
-    let found = UNITS.iter().find_map(|(ending, unit)| Some((name.strip_suffix(ending)?, *unit)));
-    found.unwrap_or((name, ""))
 }
 
 impl Field {

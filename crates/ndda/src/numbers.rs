@@ -1,5 +1,28 @@
 //! Numbers as command lines take them, and counts as people read them.
 
+/// Endings of names, and units; the longer ones before those that they end in.
+const UNITS: [(&str, &str); 13] = [
+    ("_kg_m2_s", "kg m²/s"),
+    ("_kg_m_s", "kg m/s"),
+    ("_m_s2", "m/s²"),
+    ("_m_s", "m/s"),
+    ("_j_m3", "J/m³"),
+    ("_rad_s", "rad/s"),
+    ("_deg", "°"),
+    ("_kg", "kg"),
+    ("_pa", "Pa"),
+    ("_j", "J"),
+    ("_n", "N"),
+    ("_m", "m"),
+    ("_s", "s"),
+];
+
+/// A name without the unit at its end, and the unit; empty where the name says none.
+pub fn split_unit(name: &str) -> (&str, &'static str) {
+    let found = UNITS.iter().find_map(|(ending, unit)| Some((name.strip_suffix(ending)?, *unit)));
+    found.unwrap_or((name, ""))
+}
+
 /// A count with its noun: `1 block`, `2 blocks`, `no blocks`.
 pub fn counted(count: usize, one: &str, many: &str) -> String {
     match count {

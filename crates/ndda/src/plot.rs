@@ -8,7 +8,7 @@ use plotters::coord::ranged1d::{AsRangedCoord, Ranged, ValueFormatter};
 use plotters::prelude::*;
 use serde::Serialize;
 
-use crate::field::split_unit;
+use crate::numbers::split_unit;
 use crate::picture::{self, Area, Drawn, colour, log_axis, log_range, range, short};
 
 /// Width and height of the picture [px].

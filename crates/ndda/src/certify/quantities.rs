@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use ndda_io::table::Table;
 
-use crate::field::split_unit;
+use crate::numbers::split_unit;
 
 /// Energies of a history that are certified [J].
 const ENERGIES: [&str; 9] = [

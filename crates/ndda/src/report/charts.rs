@@ -4,7 +4,7 @@ use ndda_io::results::{BoltForces, Table};
 use serde::Serialize;
 
 use super::motion::Motion;
-use crate::field::split_unit;
+use crate::numbers::split_unit;
 
 /// Rows of a history that a page holds; longer ones are thinned.
 const MOST_ROWS: usize = 2000;
