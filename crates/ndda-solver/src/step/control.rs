@@ -52,9 +52,9 @@ const BALANCED_STEPS: u64 = 128;
 const NONLINEAR: f64 = 2.0;
 /// A step is expected to gain at most this many times the part of its bound that the steps before it gained.
 const LEARNT: f64 = 3.0;
-/// What earlier steps gained says nothing about a step whose bound is more than this many times theirs.
+/// Gains of earlier steps do not predict that of a step whose bound is more than this many times as large.
 const GROWTH: f64 = 4.0;
-/// Each time that the balance is evaluated, what is remembered of earlier steps is multiplied by this factor.
+/// Each time that the balance is evaluated, the remembered gain of earlier steps is multiplied by this factor.
 const KEPT: f64 = 0.5;
 
 impl StepState {

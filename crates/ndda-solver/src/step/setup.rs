@@ -157,7 +157,7 @@ impl Simulation {
         Ok(simulation)
     }
 
-    /// What contact and bolts need to know of blocks.
+    /// Notes which blocks are affine, their bodies where friction acts on velocities, and their moments where contact and bolts act at one end of the step.
     fn prepare_contact(&mut self) {
         if self.contact.is_some() {
             let kinds = self.problem.blocks.ids().map(|block| self.shape(block).kind);

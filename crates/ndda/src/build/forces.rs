@@ -15,8 +15,8 @@ const NODE: f64 = 1e-9;
 /// Nodes of a block, counted from its first, and their shares of a force.
 type Shares = Vec<(u32, f64)>;
 
-/// The blocks that a force acts on, and its shares on their nodes: through their mass centres, or at a point on those that have it. Where none has it, as beside a
-/// face of facets for a curved one, it is on the nearest node.
+/// The blocks that a force acts on, and its shares on their nodes: through their mass centres, or at a point on those that have it. Where none has it, as between
+/// the facets and the curved face that they stand for, it acts on the nearest node.
 pub(super) fn acts_on(blocks: &BlockSet, force: &scene::Force) -> Result<Vec<(BlockId, Shares)>, String> {
     let Some(at_m) = force.at_m else {
         return in_region(blocks, &force.block, |block| {
@@ -27,8 +27,7 @@ pub(super) fn acts_on(blocks: &BlockSet, force: &scene::Force) -> Result<Vec<(Bl
     let exact = |block| shares_at(blocks, block, &place).ok_or_else(String::new);
     in_region(blocks, &force.block, exact).or_else(|_| {
         let near = in_region(blocks, &force.block, |block| nearest_node(blocks, block, &place))?;
-        let distance = |(block, (_, distance_m)): &(BlockId, (u32, f64))| (*distance_m, *block);
-        let nearest = near.into_iter().min_by(|a, b| distance(a).partial_cmp(&distance(b)).expect("numbers"));
+        let nearest = near.into_iter().min_by(|(_, a), (_, b)| a.1.total_cmp(&b.1));
         Ok(nearest.into_iter().map(|(block, (node, _))| (block, vec![(node, 1.0)])).collect())
     })
 }

@@ -143,9 +143,10 @@ pub(super) fn cut_rock(
     let mut report = RockReport { gaps, ..carved.report(rock, &domain) };
     let fill_field = if rock.into.is_some() { ".into" } else { ".fill" };
     let kept_m3 = report.domain_m3 - report.slivers.1 - report.removed.1;
-    admit::admit_fill(carved.blocks.groups().len(), &rock.filling(), (kept_m3, rock.into.is_some()))
+    let groups = carved.blocks.groups();
+    admit::admit_fill(groups.len(), &rock.filling(), (kept_m3, rock.into.is_some()))
         .map_err(|m| vec![Fault::new(at(fill_field), m)])?;
-    let (counts, refused) = carved.fill(scene, rock, take);
+    let (counts, refused) = carved.fill((scene, rock), &groups, take);
     let mut faults: Vec<Fault> = refused.into_iter().map(|m| Fault::new(at(fill_field), m)).collect();
     if let Some(k) = counts[..carved.spaces.len()].iter().position(|count| *count == 0) {
         let message = "holds no rock: check its outline, which is given as (y, z) along X, (x, z) along Y, and (x, y) along Z";
@@ -161,7 +162,7 @@ pub(super) fn cut_rock(
 /// Rock that is cut, without slivers and what is removed, and along the borders of what is to be excavated.
 struct Carved {
     blocks: Blocks,
-    /// What is to be excavated.
+    /// Spaces that stages excavate.
     spaces: Vec<Domain>,
     /// Slivers united with their neighbours.
     merged: Merged,
@@ -180,7 +181,7 @@ impl Carved {
         let (mut merged, slivers) = match rock.slivers {
             _ if rock.sliver_width_m == 0.0 => (Merged::default(), Vec::new()),
             Slivers::Merge => {
-                // What stays and what is taken out meet at the faces of the rock, which slivers neither notch nor stand in front of.
+                // Slivers unite with neighbours on their own side of the border between rock that stays and rock that is removed, which so stays plane.
                 let is_removed = |at: &Vec3| usize::from(holds(&rock.removed, at));
                 (blocks.merge_slivers_within(domain, rock.sliver_width_m, &is_removed), Vec::new())
             }
@@ -206,7 +207,7 @@ impl Carved {
         Ok(Self { blocks, spaces, merged, slivers, removed, refused })
     }
 
-    /// What there is to say of it before blocks are filled.
+    /// The report, as yet without the number of blocks, which is known once they are filled.
     fn report(&self, rock: &Rock, domain: &Domain) -> RockReport {
         RockReport {
             name: rock.name.clone(),
@@ -223,10 +224,14 @@ impl Carved {
         }
     }
 
-    /// Fills all blocks and hands out their meshes: how many there are in each space and, last, outside of all, and why some cannot be filled.
-    fn fill(&self, scene: &Scene, rock: &Rock, take: &mut TakeMesh) -> (Vec<usize>, Vec<String>) {
+    /// Fills all blocks, which are groups of parts, and hands out their meshes: how many there are in each space and, last, outside of all, and why some cannot be filled.
+    fn fill(
+        &self,
+        (scene, rock): (&Scene, &Rock),
+        groups: &[Vec<u32>],
+        take: &mut TakeMesh,
+    ) -> (Vec<usize>, Vec<String>) {
         let (blocks, filling) = (&self.blocks, rock.filling());
-        let groups = blocks.groups();
         let fill_of =
             |group: &Vec<u32>| solid::filled_group(blocks, group, fill(scene, &filling, blocks, group));
         let filled =

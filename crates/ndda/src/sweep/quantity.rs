@@ -38,13 +38,13 @@ const OF_BLOCK: [&str; 8] = [
 ];
 /// Names that are there whatever the scene.
 pub const FIXED: [&str; 4] = [LABEL, SAFETY, SAFETY_LOWER, SAFETY_UPPER];
+/// Most names that a question lists.
+const MOST_NEAR: usize = 3;
 
 /// Whether a name is one of the factor of safety or of the ends of its bracket, also where it is cut short; those of monitors and blocks have a point.
 pub fn is_of_safety(name: &str) -> bool {
     name.starts_with(SAFETY) && !name.contains('.')
 }
-/// Most names that a question lists.
-const MOST_NEAR: usize = 3;
 
 /// Quantities of one case.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

@@ -21,7 +21,7 @@ pub fn text(results: &Results) -> String {
     if bounds > 0 {
         let _ = writeln!(
             text,
-            "{bounds} of {} factors of safety are bounds, since they are below or above all factors that are tried, and count with these: \
+            "{bounds} of {} cases stand, or fail, at every factor that is tried: their `safety` is the largest or the smallest of these factors; \
              `--of safety_lower,safety_upper` tells which",
             results.cases.len()
         );

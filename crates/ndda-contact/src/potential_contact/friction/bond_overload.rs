@@ -21,7 +21,7 @@ pub(super) fn overload(
     let (slipped_m, offset_m) = (bond.slip_m, stretch.offset_m);
     let Some(left_pa) = slip(bond, &mut stretch, law, (pressed_n, input), scratch) else {
         let opens = stretch.is_pulled(law, pressed_n);
-        // What slips little by little softens; what held until now breaks at once, and it matters when.
+        // A bond that slipped in earlier steps has softened gradually. One that held until this step breaks at once, and its overload shows how late.
         stretch.offset_m = offset_m;
         let at_once = stretch.overload(law, (pressed_n, strength_pa, slipped_m), scratch);
         let overload = at_once.filter(|_| slipped_m == 0.0).map_or(0.0, |found| found.overload);

@@ -1,6 +1,6 @@
 //! Dips of planes that are written as overturned.
 
-/// What to write instead of a dip that is none: an overturned plane dips the other way.
+/// Advice on a dip that is not from 0 to 90°: that of an overturned plane is 180° minus it, in the opposite direction.
 pub(super) fn help(dip_deg: f64, dip_direction_deg: f64) -> String {
     let usual = "0 is level, 90 upright";
     if 90.0 < dip_deg && dip_deg <= 180.0 && dip_direction_deg.is_finite() {
